@@ -78,8 +78,9 @@ struct Task {
   std::vector<Slot> slots;
   std::vector<Connection> connections;
   std::vector<Mistake> mistakes;
-  std::vector<int> steps;                  ///< indices of connections, default order of asking
-  std::vector<std::vector<int>> variants;  ///< further accepted sets of connections; see docs/formats.md
+  std::vector<int> steps;  ///< indices of connections, default order of asking
+  /// Accepted sets of connections: the task's own first, then the file's `variants`. Empty if there are no connections.
+  std::vector<std::vector<int>> variants;
 
   const PartType& TypeOf(int part) const { return types[static_cast<size_t>(parts[static_cast<size_t>(part)].type)]; }
   /// Colour class of a type: types with equal HSV ranges share one. Classes are numbered in the order of first use.
