@@ -49,7 +49,7 @@ void ActQueue::AnswerRepeat(const RobotCommand& command, const Known& known, int
 }
 
 void ActQueue::Withdraw(const RobotCommand& by) {
-  if (by.replaces_id == 0) return;
+  if (by.replaces_id == 0 || by.replaces_id == by.id) return;
   RobotCommand withdrawn;
   withdrawn.session = by.session;
   withdrawn.id = by.replaces_id;

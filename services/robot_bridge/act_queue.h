@@ -37,8 +37,8 @@ class ActQueue {
  public:
   explicit ActQueue(const ActQueueOptions& options = {}) : options_(options) {}
 
-  /// Takes in a command. A running act that it withdraws or overrules (stop; an operator's act; replaces_id) is NOT ended
-  /// here: `interrupt()` tells so, and the caller stops the robot and calls Finish().
+  /// Takes in a command. A running act that it withdraws or overrules (stop; an operator's act; replaces_id) is NOT
+  /// ended here: `interrupt()` tells so, and the caller stops the robot and calls Finish().
   void Offer(const RobotCommand& command, int64_t now);
 
   /// Ends what has waited too long.

@@ -3,10 +3,10 @@
 namespace coach {
 namespace {
 
-constexpr int64_t kHandsFresh = 1000000;       // us
-constexpr int64_t kPatience = 3000000;         // us, how long a wish to point waits for a hand to go away
-constexpr int64_t kLowerPatience = 20000000;   // us, then an arm is taken down slowly though a hand is near
-constexpr double kSlow = 0.1;                  // fraction of the joints' speed
+constexpr int64_t kHandsFresh = 1000000;      // us
+constexpr int64_t kPatience = 3000000;        // us, how long a wish to point waits for a hand to go away
+constexpr int64_t kLowerPatience = 20000000;  // us, then an arm is taken down slowly though a hand is near
+constexpr double kSlow = 0.1;                 // fraction of the joints' speed
 
 }  // namespace
 
@@ -17,9 +17,7 @@ void Body::SeeHands(const std::vector<ForeignBlob>& hands, int64_t now) {
 
 bool Body::HandsKnown(int64_t now) const { return hands_at_ && now - *hands_at_ <= kHandsFresh; }
 
-Surroundings Body::Around(int64_t now) const {
-  return {X_TR_, HandsKnown(now) ? hands_ : std::vector<ForeignBlob>{}};
-}
+Surroundings Body::Around(int64_t now) const { return {X_TR_, HandsKnown(now) ? hands_ : std::vector<ForeignBlob>{}}; }
 
 void Body::Start(Limb& limb, const JointPath& path, int64_t now) {
   limb.path = path;
@@ -67,7 +65,7 @@ void Body::TryPointing(int64_t now) {
   Start(motion, plan.path, now);
   motion.state = ArmState::kRaising;
   motion.since = now;
-  motion.lower = false;
+  motion.lower = motion.heedless = false;
   ArmMotion& other = Motion(Other(plan.arm));
   if (other.state != ArmState::kDown) other.lower = true;
 }
@@ -149,12 +147,12 @@ void Body::TryLowering(Arm arm, int64_t now) {
   motion.state = ArmState::kLowering;
   motion.since = now;
   motion.lower = false;
+  motion.heedless = waited;
 }
 
 void Body::StepArm(Arm arm, int64_t now) {
   ArmMotion& motion = Motion(arm);
-  const bool forced = motion.state == ArmState::kLowering && !motion.path.points.empty() && motion.path.duration() > 3;
-  if (motion.moving && !forced && HandAhead(arm, now)) {
+  if (motion.moving && !motion.heedless && HandAhead(arm, now)) {
     Advance(motion, now);
     StopForHand(now);
     return;

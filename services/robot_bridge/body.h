@@ -1,5 +1,5 @@
-// The robot's body over time: which joints are under way, arms that are raised, held and taken down again, and the hands
-// that make them stop.
+// The robot's body over time: which joints are under way, arms that are raised, held and taken down again, and the
+// hands that make them stop.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ class Body {
   Body(const GestureOptions& options, const Pose& X_TR, BackEnd& back_end)
       : options_(options), back_end_(back_end), X_TR_(X_TR) {}
 
-  /// Hands seen on the table (table frame) and when, us. A moving robot does not raise an arm while this is older than a
-  /// second, or was never told.
+  /// Hands seen on the table (table frame) and when, us. A moving robot does not raise an arm while this is older than
+  /// a second, or was never told.
   void SeeHands(const std::vector<ForeignBlob>& hands, int64_t now);
 
   void PointAt(const Vector3& p_T, int64_t now);
@@ -62,8 +62,9 @@ class Body {
   enum class ArmState { kDown, kRaising, kHolding, kStopped, kLowering };
   struct ArmMotion : Limb {
     ArmState state = ArmState::kDown;
-    int64_t since = 0;  // us
-    bool lower = false;  // wanted down
+    int64_t since = 0;      // us
+    bool lower = false;     // wanted down
+    bool heedless = false;  // comes down slowly, hand or not
   };
 
   ArmMotion& Motion(Arm arm) { return arms_[arm == Arm::kLeft ? 0 : 1]; }

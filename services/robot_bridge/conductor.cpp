@@ -84,10 +84,10 @@ void Conductor::Begin(const RobotCommand& command, int64_t now) {
   body_.ClearWish();
   if (resting_) back_end_.Wake();
   resting_ = false;
-  rest_wanted_ = command.kind == ActKind::kRest;
+  rest_wanted_ = command.kind == ActKind::kRest || guidance_lost_;
   text_ = CleanText(command.text);
   speech_ = text_.empty() ? Speech::kNone : Speech::kPending;
-  if (rest_wanted_) return;
+  if (command.kind == ActKind::kRest) return;
   if (const auto colour = EyeColourOf(command.eye_colour)) back_end_.SetEyes(*colour);
   if (command.look_target) {
     body_.LookAt(*command.look_target, now);
@@ -99,6 +99,8 @@ void Conductor::Begin(const RobotCommand& command, int64_t now) {
   if (command.point_target) {
     body_.PointAt(*command.point_target, now);
     back_end_.ShowTarget(command.point_target);
+  } else {
+    body_.LowerArms();
   }
   if (command.order == ActOrder::kTogether) StartSpeech(now);
 }
@@ -162,7 +164,8 @@ void Conductor::End(ActState state, const std::string& reason, int64_t now) {
 }
 
 void Conductor::StepIdle(int64_t now) {
-  if (rest_wanted_ && !resting_) {
+  const RobotCommand* running = queue_.running();
+  if (rest_wanted_ && !resting_ && (running == nullptr || running->kind == ActKind::kRest)) {
     body_.LowerArms();
     if (!straight_) body_.LookStraight(now);
     straight_ = true;
@@ -173,7 +176,7 @@ void Conductor::StepIdle(int64_t now) {
     }
     return;
   }
-  const bool idle = queue_.running() == nullptr && now - ended_ > Microseconds(options_.straight_after_s);
+  const bool idle = running == nullptr && now - ended_ > Microseconds(options_.straight_after_s);
   if (idle && !straight_) {
     body_.LookStraight(now);
     straight_ = true;
@@ -185,7 +188,7 @@ void Conductor::WatchGuidance(int64_t now) {
   if (now - *heartbeat_ <= Microseconds(options_.heartbeat_timeout_s)) return;
   guidance_lost_ = true;
   queue_.WithdrawAll("the guidance is silent");
-  if (queue_.running() == nullptr) rest_wanted_ = true;
+  rest_wanted_ = true;
 }
 
 void Conductor::Step(int64_t now) {

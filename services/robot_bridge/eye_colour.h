@@ -13,8 +13,8 @@ struct EyeColour {
   bool operator==(const EyeColour&) const = default;
 };
 
-/// The light for an English colour word ("blue", "dark green", "light-blue": the last known word counts); nothing for an
-/// unknown one.
+/// The light for an English colour word ("blue", "dark green", "light-blue": the last known word counts); nothing for
+/// an unknown one.
 std::optional<EyeColour> EyeColourOf(std::string_view word);
 
 /// "#rrggbb".

@@ -7,7 +7,7 @@
 namespace coach {
 namespace {
 
-constexpr double kPitchStep = 0.02;      // rad, by which an aim is raised until it clears the table
+constexpr double kPitchStep = 0.02;         // rad, by which an aim is raised until it clears the table
 constexpr double kHeightTolerance = 0.005;  // m
 
 double DistanceToSegment(const Vector3& p, const Vector3& a, const Vector3& b) {

@@ -48,8 +48,8 @@ struct PointingPlan {
   double residual = 0;   ///< rad
 };
 
-/// Raises an arm towards the target (table frame): straight there, or by way of the folded arm where something is in the
-/// way. An arm that would come too near to the table points higher, and says so by `clamped`.
+/// Raises an arm towards the target (table frame): straight there, or by way of the folded arm where something is in
+/// the way. An arm that would come too near to the table points higher, and says so by `clamped`.
 PointingPlan PlanPointing(const Vector3& p_T, const JointAngles& from, Arm last_arm, const Surroundings& surroundings,
                           const GestureOptions& options);
 

@@ -96,8 +96,7 @@ JointPath SmoothPath(const std::vector<JointAngles>& way_points, double speed_fr
   for (size_t i = 1; i < way_points.size(); ++i) {
     double needed = 0;
     for (int j = 0; j < kNumJoints; ++j) {
-      const double change =
-          std::abs(way_points[i][static_cast<size_t>(j)] - way_points[i - 1][static_cast<size_t>(j)]);
+      const double change = std::abs(way_points[i][static_cast<size_t>(j)] - way_points[i - 1][static_cast<size_t>(j)]);
       if (change > 1e-6) path.moves[static_cast<size_t>(j)] = true;
       needed = std::max(needed, change / (LimitOf(j).speed * speed_fraction));
     }

@@ -22,8 +22,8 @@ struct Gaze {
 };
 Gaze GazeOf(const JointAngles& angles);
 
-/// What an aim came to. `clamped`: a limit binds, and `residual` is the angle (rad) between the line that was wanted and
-/// the line that is had.
+/// What an aim came to. `clamped`: a limit binds, and `residual` is the angle (rad) between the line that was wanted
+/// and the line that is had.
 struct Aim {
   JointAngles angles{};
   bool clamped = false;

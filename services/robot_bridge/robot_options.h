@@ -1,0 +1,41 @@
+// The `robot:` part of the station file.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/configuration/yaml_reader.h"
+#include "services/robot_bridge/conductor.h"
+
+namespace coach {
+
+struct VirtualRobotOptions {
+  std::string host = "127.0.0.1";  ///< address to listen at; 0.0.0.0 lets tablets of the network in, and needs a token
+  int port = 8765;                 ///< 0: any free one
+  std::string token;               ///< empty: none asked for (loopback only); else pages open by /?token=...
+  int max_pages = 12;              ///< pages and clients attached at once
+};
+
+struct NaoOptions {
+  std::string url = "tcp://nao.local:9559";  ///< tcp://host:port or tcps://host:port
+  std::string user, token;                   ///< both empty: no login
+  double call_timeout_s = 5;                 ///< s, of short calls; motion gets its own length more
+  double largest_volume = 0.8;               ///< 0..1
+};
+
+struct RobotOptions {
+  std::string back_end = "virtual";  ///< virtual, nao or log
+  double volume = 0.6;               ///< 0..1 at the start
+  ConductorOptions conductor;
+  VirtualRobotOptions virtual_robot;
+  NaoOptions nao;
+};
+
+/// The robot opposite the child, half a metre from the middle of the table, low.
+Pose DefaultRobotPose();
+
+/// Reads the options; the node may be missing (all defaults).
+/// @throws ConfigurationError naming file, line, key, what was found and expected.
+RobotOptions ReadRobotOptions(const std::optional<YamlNode>& robot);
+
+}  // namespace coach
