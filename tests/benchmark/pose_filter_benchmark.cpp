@@ -1,0 +1,70 @@
+// The kernels of stage 2.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "services/pose_filter/depth_renderer.h"
+#include "tests/support/test_meshes.h"
+
+namespace coach {
+namespace {
+
+CameraModel Camera() {
+  CameraModel camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 570;
+  camera.cx = 320;
+  camera.cy = 240;
+  return camera;
+}
+
+std::vector<Pose> Poses(int n) {
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal;
+  std::vector<Pose> poses;
+  for (int i = 0; i < n; ++i) {
+    const Vector3 w(normal(generator), normal(generator), normal(generator));
+    poses.push_back(MakePose(ExpRotation(w), {0.1 * normal(generator), 0.08 * normal(generator), 0.8}));
+  }
+  return poses;
+}
+
+void Report(benchmark::State& state, const DepthTile& tile) {
+  int points = 0;
+  for (int j = 0; j < tile.area.height; ++j) {
+    points += static_cast<int>(
+        std::count_if(tile.row(j), tile.row(j) + tile.area.width, [](float z) { return z < DepthTile::kEmpty; }));
+  }
+  state.counters["points"] = points;
+}
+
+void BM_RenderBrick(benchmark::State& state) {
+  const RenderMesh mesh(BoxMesh({0.12, 0.03, 0.03}));
+  const PixelGrid grid = SampledGrid(Camera(), static_cast<int>(state.range(0)));
+  const auto poses = Poses(64);
+  DepthTile tile;
+  size_t i = 0;
+  for (auto _ : state) RenderDepth(mesh, grid, poses[i++ % poses.size()], tile);
+  Report(state, tile);
+}
+BENCHMARK(BM_RenderBrick)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->ArgName("step");
+
+void BM_RenderTriangles(benchmark::State& state) {
+  const int along = static_cast<int>(std::lround(std::sqrt(static_cast<double>(state.range(0)) / 4)));
+  const TriangleMesh torus = TorusMesh(0.05, 0.02, 2 * along, along);
+  const RenderMesh mesh(torus);
+  const PixelGrid grid = SampledGrid(Camera(), 4);
+  const auto poses = Poses(64);
+  DepthTile tile;
+  size_t i = 0;
+  for (auto _ : state) RenderDepth(mesh, grid, poses[i++ % poses.size()], tile);
+  Report(state, tile);
+  state.counters["triangles"] = static_cast<double>(torus.triangles.size());
+}
+BENCHMARK(BM_RenderTriangles)->Arg(64)->Arg(256)->Arg(1024)->Arg(4096)->Arg(10000);
+
+}  // namespace
+}  // namespace coach
