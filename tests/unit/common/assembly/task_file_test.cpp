@@ -179,5 +179,18 @@ TEST(TaskFileOfRecordings, AllLoad) {
   EXPECT_GE(loaded, 3);
 }
 
+TEST(TaskFileOfProject, ShippedTasksLoad) {
+  const fs::path tasks = fs::path(COACH_SOURCE_DIR) / "deploy" / "tasks";
+  int loaded = 0;
+  for (const auto& entry : fs::directory_iterator(tasks)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Task task = LoadTask(entry.path());
+    EXPECT_FALSE(task.connections.empty()) << entry.path();
+    for (const PartType& type : task.types) EXPECT_GT(SignedVolume(type.mesh), 1e-6) << type.name;
+    ++loaded;
+  }
+  EXPECT_EQ(loaded, 4);
+}
+
 }  // namespace
 }  // namespace coach

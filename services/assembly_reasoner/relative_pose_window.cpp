@@ -1,0 +1,120 @@
+#include "services/assembly_reasoner/relative_pose_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace coach {
+namespace {
+
+constexpr double kMicro = 1e-6;
+constexpr double kMedianVariance = 1.57;    // pi / 2: variance of a median over that of a mean, normal errors
+constexpr double kMadToDeviation = 1.4826;  // of normal errors
+constexpr double kLongestStep = 0.1;        // s, a longer gap between samples covers no more time than this
+
+double Median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Summary {
+  Vector6 median = Vector6::Zero();
+  Vector6 deviation = Vector6::Zero();  ///< robust
+};
+
+Summary Summarise(const std::vector<Vector6>& x, size_t begin, size_t end) {
+  Summary s;
+  std::vector<double> values(end - begin);
+  for (int axis = 0; axis < 6; ++axis) {
+    for (size_t i = begin; i < end; ++i) values[i - begin] = x[i][axis];
+    s.median[axis] = Median(values);
+    for (size_t i = begin; i < end; ++i) values[i - begin] = std::abs(x[i][axis] - s.median[axis]);
+    s.deviation[axis] = kMadToDeviation * Median(values);
+  }
+  return s;
+}
+
+/// The mean reported covariance, widened axis by axis to the spread that was seen.
+Matrix6 Widened(const Matrix6& reported, const Vector6& deviation) {
+  Vector6 factor;
+  for (int i = 0; i < 6; ++i) factor[i] = std::max(1.0, deviation[i] / std::sqrt(reported(i, i)));
+  return factor.asDiagonal() * reported * factor.asDiagonal();
+}
+
+}  // namespace
+
+void RelativePoseWindow::Add(const RelativePoseSample& sample) {
+  if (!sample.covariance.allFinite() || !sample.X_AB.matrix().allFinite()) return;
+  if (!(sample.covariance.diagonal().minCoeff() > 0)) return;
+  if (!samples_.empty()) {
+    if (sample.utime <= samples_.back().utime) return;
+    if ((sample.X_AB.matrix() - samples_.back().X_AB.matrix()).cwiseAbs().maxCoeff() < 1e-9) return;
+  }
+  samples_.push_back(sample);
+  const int64_t oldest = sample.utime - static_cast<int64_t>(options_.history / kMicro);
+  while (samples_.front().utime < oldest) samples_.pop_front();
+}
+
+std::optional<RelativePoseEstimate> RelativePoseWindow::Estimate(int64_t now) const {
+  std::optional<RelativePoseEstimate> best;
+  if (samples_.empty()) return best;
+  const Pose& reference = samples_.back().X_AB;
+  std::vector<Vector6> x;  // newest first, grows with the window
+  Matrix6 sum = Matrix6::Zero();
+  double travel = 0, turn = 0;
+  size_t next = samples_.size();
+  for (double window = options_.shortest; window <= options_.longest * 1.001; window *= 2) {
+    const int64_t begin = now - static_cast<int64_t>(window / kMicro);
+    for (; next > 0 && samples_[next - 1].utime > begin; --next) {
+      const RelativePoseSample& s = samples_[next - 1];
+      x.push_back(Difference(reference, s.X_AB));
+      sum += s.covariance;
+      travel = std::max(travel, s.travel);
+      turn = std::max(turn, s.turn);
+    }
+    if (x.empty()) return best;
+    const Matrix6 mean_covariance = sum / static_cast<double>(x.size());
+    const Summary all = Summarise(x, 0, x.size());
+    const Matrix6 wide = Widened(mean_covariance, all.deviation);
+    double covered = 0;
+    for (size_t i = next; i + 1 < samples_.size(); ++i)
+      covered += std::min(kLongestStep, static_cast<double>(samples_[i + 1].utime - samples_[i].utime) * kMicro);
+    const double independent = std::max(1.0, covered / (2 * options_.correlation_time));
+    if (best && x.size() >= 4) {
+      const size_t half = x.size() / 2;
+      const Vector6 change = Summarise(x, 0, half).median - Summarise(x, half, x.size()).median;
+      for (int i = 0; i < 6; ++i) {
+        const double sigma = std::sqrt(2 * kMedianVariance * mean_covariance(i, i) / std::max(1.0, independent / 2));
+        const double floor = i < 3 ? options_.change_position : options_.change_angle;
+        if (std::abs(change[i]) > floor + options_.change_sigmas * sigma) return best;
+      }
+    }
+    RelativePoseEstimate estimate;
+    estimate.X_AB = Perturb(reference, all.median);
+    estimate.covariance = wide * (independent > 1 ? std::min(1.0, kMedianVariance / independent) : 1.0);
+    estimate.constant_for = covered;
+    estimate.travel = travel;
+    estimate.turn = turn;
+    best = estimate;
+  }
+  return best;
+}
+
+void RelativePoseWindow::Reverse() {
+  for (RelativePoseSample& s : samples_) {
+    const Pose X_BA = s.X_AB.inverse();
+    // d(X_BA): rotation -R^T w, position -R^T (dp - w x p) of the perturbation (dp, w) of X_AB.
+    const Vector3 p = s.X_AB.translation();
+    Matrix3 P;
+    P << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
+    Matrix6 J = Matrix6::Zero();
+    J.topLeftCorner<3, 3>() = -X_BA.linear();
+    J.topRightCorner<3, 3>() = -X_BA.linear() * P;
+    J.bottomRightCorner<3, 3>() = -X_BA.linear();
+    s.covariance = J * s.covariance * J.transpose();
+    s.X_AB = X_BA;
+  }
+}
+
+}  // namespace coach
