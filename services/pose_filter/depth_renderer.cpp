@@ -19,7 +19,7 @@ namespace coach {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, DepthTile::kPadding>;
+using D = hn::CappedTag<float, RenderedDepth::kPadding>;
 using V = hn::Vec<D>;
 
 /// Part frame to tile coordinates: row-major 3 x 4.
@@ -55,7 +55,7 @@ HWY_INLINE Vector Minus(const Vector& a, const Vector& b) {
 /// Planes over the tile, value = x u + y v + z: three edges (inside: not negative) and 1 / z with its bounds; one lane
 /// a triangle.
 struct Setup {
-  static constexpr size_t kLanes = DepthTile::kPadding;
+  static constexpr size_t kLanes = RenderedDepth::kPadding;
   HWY_ALIGN float edge[3][3][kLanes];
   HWY_ALIGN float inverse[3][kLanes];
   HWY_ALIGN float farthest[kLanes], nearest[kLanes];  // bounds of 1 / z
@@ -120,7 +120,7 @@ HWY_INLINE bool SetUp(D d, const RenderMesh& mesh, size_t first, const Projectio
 }
 
 /// Draws 1 / z of triangle `i` of the setup, keeping the larger.
-HWY_INLINE void Draw(D d, const Setup& s, size_t i, DepthTile& tile) {
+HWY_INLINE void Draw(D d, const Setup& s, size_t i, RenderedDepth& tile) {
   const size_t lanes = hn::Lanes(d);
   const auto left = static_cast<size_t>(s.left[i]) / lanes * lanes, right = static_cast<size_t>(s.right[i]);
   const V limit = hn::Set(d, static_cast<float>(1 / kNearPlane));
@@ -145,7 +145,7 @@ HWY_INLINE void Draw(D d, const Setup& s, size_t i, DepthTile& tile) {
   }
 }
 
-void Render(const RenderMesh& mesh, const Projection& m, bool cull, DepthTile& tile) {
+void Render(const RenderMesh& mesh, const Projection& m, bool cull, RenderedDepth& tile) {
   const D d;
   const size_t lanes = hn::Lanes(d);
   Setup setup;
@@ -208,17 +208,16 @@ double NearestCorner(const RenderMesh& mesh, const Pose& X_CP) {
 }  // namespace
 
 PixelGrid SampledGrid(const CameraModel& camera, int step) {
-  const int offset = step / 2;
-  return {(camera.width - offset + step - 1) / step,
-          (camera.height - offset + step - 1) / step,
+  return {(camera.width + step - 1) / step,
+          (camera.height + step - 1) / step,
           step,
           camera.fx / step,
           camera.fy / step,
-          (camera.cx - offset) / step,
-          (camera.cy - offset) / step};
+          camera.cx / step,
+          camera.cy / step};
 }
 
-void DepthTile::Reset(const GridRectangle& new_area, float value) {
+void RenderedDepth::Reset(const GridRectangle& new_area, float value) {
   area = new_area;
   stride = (area.width + kPadding - 1) / kPadding * kPadding;
   const size_t size = static_cast<size_t>(stride) * static_cast<size_t>(area.height);
@@ -228,7 +227,8 @@ void DepthTile::Reset(const GridRectangle& new_area, float value) {
 
 RenderMesh::RenderMesh(const TriangleMesh& mesh)
     : num_triangles_(static_cast<int>(mesh.triangles.size())), closed_(IsClosed(mesh)) {
-  const size_t padded = (mesh.triangles.size() + DepthTile::kPadding - 1) / DepthTile::kPadding * DepthTile::kPadding;
+  const size_t padded =
+      (mesh.triangles.size() + RenderedDepth::kPadding - 1) / RenderedDepth::kPadding * RenderedDepth::kPadding;
   for (auto& list : coordinates_) list.assign(padded, 0.0F);
   if (!mesh.vertices.empty()) low_ = high_ = mesh.vertices[0];
   for (const Vector3& v : mesh.vertices) {
@@ -275,7 +275,7 @@ GridRectangle SilhouetteBounds(const RenderMesh& mesh, const PixelGrid& grid, co
 }
 
 void RenderDepth(const RenderMesh& mesh, const PixelGrid& grid, const Pose& X_CP, const GridRectangle& area,
-                 DepthTile& tile) {
+                 RenderedDepth& tile) {
   if (!X_CP.matrix().allFinite()) {
     tile.Reset(area);
     return;
@@ -291,11 +291,11 @@ void RenderDepth(const RenderMesh& mesh, const PixelGrid& grid, const Pose& X_CP
   HWY_DYNAMIC_DISPATCH(Render)(mesh, projection, cull, tile);
 }
 
-void RenderDepth(const RenderMesh& mesh, const PixelGrid& grid, const Pose& X_CP, DepthTile& tile) {
+void RenderDepth(const RenderMesh& mesh, const PixelGrid& grid, const Pose& X_CP, RenderedDepth& tile) {
   RenderDepth(mesh, grid, X_CP, SilhouetteBounds(mesh, grid, X_CP), tile);
 }
 
-void MergeNearer(const DepthTile& from, DepthTile& into) {
+void MergeNearer(const RenderedDepth& from, RenderedDepth& into) {
   const int left = std::max(from.area.x, into.area.x);
   const int right = std::min(from.area.x + from.area.width, into.area.x + into.area.width);
   const int top = std::max(from.area.y, into.area.y);

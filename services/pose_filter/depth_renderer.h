@@ -12,15 +12,15 @@
 namespace coach {
 
 /// The image points at which depth is compared: every step-th pixel, each way. Grid point (i, j) is image pixel
-/// (step * i + step / 2, step * j + step / 2). A point p_C projects to (fx x / z + cx, fy y / z + cy) in grid units;
+/// (step * i, step * j). A point p_C projects to (fx x / z + cx, fy y / z + cy) in grid units;
 /// lens distortion is taken to be removed.
 struct PixelGrid {
   int width = 0, height = 0;  ///< points
   int step = 1;               ///< px
   double fx = 0, fy = 0, cx = 0, cy = 0;
 
-  int ImageX(int i) const { return step * i + step / 2; }  ///< px
-  int ImageY(int j) const { return step * j + step / 2; }  ///< px
+  int ImageX(int i) const { return step * i; }  ///< px
+  int ImageY(int j) const { return step * j; }  ///< px
 };
 /// @param step at least 1, px.
 PixelGrid SampledGrid(const CameraModel& camera, int step);
@@ -33,7 +33,7 @@ struct GridRectangle {
 
 /// Depths (m, along the optical axis) of a rectangle of the grid; infinity where nothing is. Memory only grows, so that
 /// a tile used again allocates nothing.
-struct DepthTile {
+struct RenderedDepth {
   static constexpr float kEmpty = std::numeric_limits<float>::infinity();
 
   GridRectangle area;
@@ -58,7 +58,8 @@ class RenderMesh {
   bool closed() const { return closed_; }
   const Vector3& low() const { return low_; }    ///< m, box in the part frame
   const Vector3& high() const { return high_; }  ///< m
-  /// Coordinate `axis` of corner `corner` of every triangle, padded with zeros to a multiple of DepthTile::kPadding.
+  /// Coordinate `axis` of corner `corner` of every triangle, padded with zeros to a multiple of
+  /// RenderedDepth::kPadding.
   const float* coordinates(int corner, int axis) const {
     return coordinates_[static_cast<size_t>(3 * corner + axis)].data();
   }
@@ -80,11 +81,11 @@ GridRectangle SilhouetteBounds(const RenderMesh& mesh, const PixelGrid& grid, co
 /// Draws the part into `tile`, which becomes `area`. A point belongs to a triangle if it is inside or within 0.001 of
 /// the grid's spacing of it, so meshes have no cracks. Depths are within 1e-5 (relative) of exact.
 void RenderDepth(const RenderMesh& mesh, const PixelGrid& grid, const Pose& X_CP, const GridRectangle& area,
-                 DepthTile& tile);
+                 RenderedDepth& tile);
 /// The same with area = SilhouetteBounds.
-void RenderDepth(const RenderMesh& mesh, const PixelGrid& grid, const Pose& X_CP, DepthTile& tile);
+void RenderDepth(const RenderMesh& mesh, const PixelGrid& grid, const Pose& X_CP, RenderedDepth& tile);
 
 /// into = the nearer of both, where they overlap.
-void MergeNearer(const DepthTile& from, DepthTile& into);
+void MergeNearer(const RenderedDepth& from, RenderedDepth& into);
 
 }  // namespace coach

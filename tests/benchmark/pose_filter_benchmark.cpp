@@ -32,11 +32,11 @@ std::vector<Pose> Poses(int n) {
   return poses;
 }
 
-void Report(benchmark::State& state, const DepthTile& tile) {
+void Report(benchmark::State& state, const RenderedDepth& tile) {
   int points = 0;
   for (int j = 0; j < tile.area.height; ++j) {
     points += static_cast<int>(
-        std::count_if(tile.row(j), tile.row(j) + tile.area.width, [](float z) { return z < DepthTile::kEmpty; }));
+        std::count_if(tile.row(j), tile.row(j) + tile.area.width, [](float z) { return z < RenderedDepth::kEmpty; }));
   }
   state.counters["points"] = points;
 }
@@ -45,7 +45,7 @@ void BM_RenderBrick(benchmark::State& state) {
   const RenderMesh mesh(BoxMesh({0.12, 0.03, 0.03}));
   const PixelGrid grid = SampledGrid(Camera(), static_cast<int>(state.range(0)));
   const auto poses = Poses(64);
-  DepthTile tile;
+  RenderedDepth tile;
   size_t i = 0;
   for (auto _ : state) RenderDepth(mesh, grid, poses[i++ % poses.size()], tile);
   Report(state, tile);
@@ -58,7 +58,7 @@ void BM_RenderTriangles(benchmark::State& state) {
   const RenderMesh mesh(torus);
   const PixelGrid grid = SampledGrid(Camera(), 4);
   const auto poses = Poses(64);
-  DepthTile tile;
+  RenderedDepth tile;
   size_t i = 0;
   for (auto _ : state) RenderDepth(mesh, grid, poses[i++ % poses.size()], tile);
   Report(state, tile);

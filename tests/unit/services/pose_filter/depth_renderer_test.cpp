@@ -60,7 +60,7 @@ Reference CastRay(const TriangleMesh& mesh, const PixelGrid& grid, const Pose& X
 
 void ExpectAgreement(const TriangleMesh& mesh, const PixelGrid& grid, const Pose& X_CP, int* drawn = nullptr) {
   const RenderMesh prepared(mesh);
-  DepthTile tile;
+  RenderedDepth tile;
   RenderDepth(prepared, grid, X_CP, tile);
   int uncertain = 0, points = 0;
   for (int j = 0; j < grid.height; ++j) {
@@ -69,7 +69,7 @@ void ExpectAgreement(const TriangleMesh& mesh, const PixelGrid& grid, const Pose
       const bool near_tile = x >= -5 && y >= -5 && x < tile.area.width + 5 && y < tile.area.height + 5;
       if (!near_tile && (i + j) % 11 != 0) continue;  // a sample of what is far from the part
       const bool in_tile = x >= 0 && y >= 0 && x < tile.area.width && y < tile.area.height;
-      const float depth = in_tile ? tile.row(y)[x] : DepthTile::kEmpty;
+      const float depth = in_tile ? tile.row(y)[x] : RenderedDepth::kEmpty;
       const Reference expected = CastRay(mesh, grid, X_CP, i, j);
       if (expected.uncertain) {
         ++uncertain;
@@ -162,7 +162,7 @@ TEST_P(DepthRenderer, DenseMeshHasNoCracks) {
   std::mt19937_64 generator(5);
   for (int k = 0; k < 3; ++k) {
     const Pose pose = RandomPose(generator, 0.1, 0.1, 0.5, 0.7);
-    DepthTile tile;
+    RenderedDepth tile;
     RenderDepth(prepared, grid, pose, tile);
     for (int y = 1; y + 1 < tile.area.height; ++y) {
       for (int x = 1; x + 1 < tile.area.width; ++x) {
@@ -179,13 +179,13 @@ INSTANTIATE_TEST_SUITE_P(Targets, DepthRenderer,
                          testing::Values<int64_t>(HWY_SSE4, HWY_AVX2, HWY_AVX3, HWY_BASELINE_TARGETS),
                          [](const auto& target) { return std::string("target_") + std::to_string(target.index); });
 
-TEST(DepthTile, GridPointsAreImagePixels) {
+TEST(RenderedDepth, GridPointsAreImagePixels) {
   const CameraModel camera = Camera();
   for (const int step : {1, 2, 3, 5, 8}) {
     const PixelGrid grid = SampledGrid(camera, step);
     const Vector3 p(0.1, -0.05, 0.8);
     const auto pixel = camera.Project(p);
-    EXPECT_NEAR(grid.fx * p.x() / p.z() + grid.cx, (pixel.x() - step / 2) / step, 1e-9);
+    EXPECT_NEAR(grid.fx * p.x() / p.z() + grid.cx, pixel.x() / step, 1e-9);
     EXPECT_LT(grid.ImageX(grid.width - 1), camera.width);
     EXPECT_GE(grid.ImageX(grid.width), camera.width);
     EXPECT_LT(grid.ImageY(grid.height - 1), camera.height);
@@ -193,10 +193,10 @@ TEST(DepthTile, GridPointsAreImagePixels) {
   }
 }
 
-TEST(DepthTile, OutOfSightIsEmpty) {
+TEST(RenderedDepth, OutOfSightIsEmpty) {
   const RenderMesh mesh(BoxMesh({0.1, 0.1, 0.1}));
   const PixelGrid grid = SampledGrid(Camera(), 2);
-  DepthTile tile;
+  RenderedDepth tile;
   Pose behind = Pose::Identity();
   behind.translation().z() = -1;
   RenderDepth(mesh, grid, behind, tile);
@@ -211,8 +211,8 @@ TEST(DepthTile, OutOfSightIsEmpty) {
   for (int j = 0; j < 10; ++j) EXPECT_TRUE(std::isinf(tile.row(j)[5]));
 }
 
-TEST(DepthTile, MergeKeepsTheNearer) {
-  DepthTile a, b;
+TEST(RenderedDepth, MergeKeepsTheNearer) {
+  RenderedDepth a, b;
   a.Reset({10, 10, 40, 20}, 1.0F);
   b.Reset({30, 5, 40, 10}, 0.5F);
   b.row(7)[3] = 2.0F;  // grid point 33, 12
@@ -224,15 +224,15 @@ TEST(DepthTile, MergeKeepsTheNearer) {
       ASSERT_EQ(a.row(j)[i], overlap && !exception ? 0.5F : 1.0F) << i << ", " << j;
     }
   }
-  DepthTile apart;
+  RenderedDepth apart;
   apart.Reset({200, 200, 5, 5}, 0.1F);
   const auto before = a.depth;
   MergeNearer(apart, a);
   EXPECT_EQ(a.depth, before);
 }
 
-TEST(DepthTile, UsedAgainAllocatesNothing) {
-  DepthTile tile;
+TEST(RenderedDepth, UsedAgainAllocatesNothing) {
+  RenderedDepth tile;
   tile.Reset({0, 0, 100, 100});
   const float* memory = tile.depth.data();
   tile.Reset({5, 5, 64, 90});
