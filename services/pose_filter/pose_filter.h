@@ -13,7 +13,8 @@
 
 namespace coach {
 
-/// Calls body(i) for i in [0, n), perhaps on several threads; returns when all are done. Results may not depend on the order.
+/// Calls body(i) for i in [0, n), perhaps on several threads; returns when all are done. Results may not depend on the
+/// order.
 using ParallelFor = std::function<void(int n, const std::function<void(int)>& body)>;
 ParallelFor SerialFor();
 
@@ -25,8 +26,8 @@ struct FilterInput {
   CameraModel camera;
   cv::Mat depth;  ///< CV_16UC1 or empty
   double metres_per_unit = 0.001;
-  cv::Mat colour;                          ///< CV_8UC3 (blue green red) or empty
-  const Detections* detections = nullptr;  ///< of the same utime, or null
+  cv::Mat colour;                            ///< CV_8UC3 (blue green red) or empty
+  const Detections* detections = nullptr;    ///< of the same utime, or null
   const ConnectionBelief* belief = nullptr;  ///< newest from the reasoner, or null; the filter checks its age
 };
 
@@ -38,8 +39,8 @@ class PoseFilter {
   virtual PartPoses Step(const FilterInput& input) = 0;
   /// Forgets every pose; the next step starts from nothing.
   virtual void Reset() = 0;
-  /// Poses known from elsewhere (a state file, or ground truth where the option's name says so), as hypotheses that must win
-  /// on the image. Index = part; X_CP in the camera frame of the next step.
+  /// Poses known from elsewhere (a state file, or ground truth where the option's name says so), as hypotheses that
+  /// must win on the image. Index = part; X_CP in the camera frame of the next step.
   virtual void Suggest(const std::vector<Pose>& X_CP) = 0;
 };
 

@@ -1,0 +1,75 @@
+// Coach's tracker. For each part and frame: particles around motion, rest and a rigid partner, scored cheaply; the best
+// refined by Gauss-Newton on depth and contour; the winner by the full observation model fused with the prediction.
+// Parts that are not where they should be are searched in the blobs of colour that no part explains.
+#pragma once
+
+#include <memory>
+#include <random>
+
+#include "services/pose_filter/camera_motion.h"
+#include "services/pose_filter/part_track.h"
+#include "services/pose_filter/pose_filter.h"
+
+namespace coach {
+
+struct FullFilterOptions {
+  int particles = 200;       ///< a part
+  int particle_points = 60;  ///< surface points a particle is scored on (about half of them face the camera)
+  int searches = 3;          ///< searches from nothing a frame, at most (all of them in the first frames)
+  double relocation_gain =
+      200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
+  TrackOptions track;
+  PoseSearchOptions search;
+  RefinementOptions refinement;
+  CameraMotionOptions camera;
+  TableOptions table;
+};
+
+class FullFilter final : public PoseFilter {
+ public:
+  FullFilter(const Task& task, const FullFilterOptions& options, uint64_t seed, ParallelFor parallel_for);
+
+  PartPoses Step(const FilterInput& input) override;
+  void Reset() override;
+  void Suggest(const std::vector<Pose>& X_CP) override;
+
+ private:
+  struct Shape {
+    PartModel model;
+    PointSet search_points, particle_points;
+  };
+  const Shape& ShapeOf(int part) const {
+    return *shapes_[static_cast<size_t>(task_.parts[static_cast<size_t>(part)].type)];
+  }
+
+  void LocateCamera(const Observation& observation);
+  void BuildOwners(const Observation& observation, double dt);
+  void UpdateTrack(int part, const Observation& observation, double dt);
+  Pose BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest, double dt);
+  void Recover(const Observation& observation);
+  void Place(int part, const Observation& observation);
+  PartPoses Output(const FilterInput& input) const;
+
+  Task task_;
+  FullFilterOptions options_;
+  uint64_t seed_;
+  ParallelFor parallel_for_;
+  std::vector<std::unique_ptr<Shape>> shapes_;  // one a type
+  std::vector<int> class_of_part_;
+  std::vector<uint8_t> bit_of_part_;
+
+  std::mt19937_64 rng_;
+  int64_t last_utime_ = 0;
+  int64_t steps_ = 0;
+  CameraModel camera_model_;
+  CameraMotion camera_;
+  OwnerMap owners_;
+  std::vector<Track> tracks_;
+  std::vector<DepthTile> tiles_;  // of each part, as added to owners_
+  std::vector<Pose> suggested_;
+  BlobFinder blob_finder_;
+  Distractors distractors_;
+  RefinementScratch scratch_;
+};
+
+}  // namespace coach

@@ -1,0 +1,114 @@
+#include "services/pose_filter/part_track.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coach {
+namespace {
+
+Matrix6 Diagonal(double position, double rotation) {
+  Matrix6 m = Matrix6::Zero();
+  m.diagonal().head<3>().setConstant(position * position);
+  m.diagonal().tail<3>().setConstant(rotation * rotation);
+  return m;
+}
+
+double Confidence(const Score& score) { return std::clamp(score.agreement(), 0.0, 1.0); }
+
+double VisibleFraction(const PoseCandidate& c) {
+  return c.full_samples > 0 ? std::clamp((c.score.inlier + c.score.no_reading) / c.full_samples, 0.0, 1.0) : 0.0;
+}
+
+}  // namespace
+
+Pose PredictPose(const Track& track, double dt) {
+  if (!track.moving || track.status != PartStatus::kTracked) return track.X_TP;
+  return Perturb(track.X_TP, track.velocity * dt);
+}
+
+Matrix6 PredictCovariance(const Track& track, double dt, const TrackOptions& options) {
+  if (track.moving) return track.covariance + Diagonal(options.moving_position * dt, options.moving_rotation * dt);
+  return track.covariance + Diagonal(options.still_position * std::sqrt(dt), options.still_rotation * std::sqrt(dt));
+}
+
+void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const TrackOptions& options, Track& track) {
+  const Pose measured = X_TC * candidate.X_CP;
+  const Matrix6 information = RotateCovariance(X_TC.linear(), candidate.refinement.information);
+  const Matrix6 noise = (information + Matrix6::Identity() * 1e-3).inverse();
+  const Pose before = track.X_TP;
+  // Does the pose say that the part moves? Judged against a part at rest.
+  const Vector6 shift = Difference(before, measured);
+  const Matrix6 spread = noise + track.covariance + Diagonal(options.floor_position, options.floor_rotation);
+  const bool moves = shift.dot(spread.ldlt().solve(shift)) > options.moving_threshold;
+  track.moving_for = moves ? 0 : track.moving_for + dt;
+  track.moving = moves || track.moving_for < 0.25;
+  const Pose predicted = PredictPose(track, dt);
+  const Matrix6 prior = PredictCovariance(track, dt, options);
+  const Vector6 innovation = Difference(predicted, measured);
+  const Matrix6 gain = prior * (prior + noise).inverse();
+  track.X_TP = Perturb(predicted, gain * innovation);
+  track.covariance = (Matrix6::Identity() - gain) * prior;
+  track.covariance = (0.5 * (track.covariance + track.covariance.transpose())).eval();
+  if (track.hidden_for > 0) {
+    track.velocity.setZero();
+  } else if (dt > 0) {
+    track.velocity = 0.4 * track.velocity + 0.6 * Difference(before, track.X_TP) / dt;
+    if (!track.moving) track.velocity.setZero();
+  }
+  track.status = PartStatus::kTracked;
+  track.hidden_for = 0;
+  track.carried = false;
+  track.bad = 0;
+  track.visible_fraction = VisibleFraction(candidate);
+  track.confidence = Confidence(candidate.score);
+  track.measured_information = candidate.refinement.information;
+  track.X_CP_measured = candidate.X_CP;
+}
+
+void Restart(const PoseCandidate& candidate, const Pose& X_TC, Track& track) {
+  track = Track();
+  track.status = PartStatus::kTracked;
+  track.X_TP = X_TC * candidate.X_CP;
+  track.covariance =
+      (RotateCovariance(X_TC.linear(), candidate.refinement.information) + Matrix6::Identity() * 1e-3).inverse();
+  track.moving = true;
+  track.visible_fraction = VisibleFraction(candidate);
+  track.confidence = Confidence(candidate.score);
+  track.measured_information = candidate.refinement.information;
+  track.X_CP_measured = candidate.X_CP;
+}
+
+void Coast(PartStatus status, double dt, const TrackOptions& options, Track& track) {
+  if (track.hidden_for == 0) track.carried = track.moving;
+  const double before = track.hidden_for, after = before + dt;
+  if (track.carried) {
+    // The distance covered grows like the time: the difference of two squares keeps it independent of the frame rate.
+    const double growth = options.carried_growth * options.carried_growth * (after * after - before * before);
+    track.covariance += Diagonal(std::sqrt(std::max(0.0, growth)), 5 * std::sqrt(std::max(0.0, growth)));
+  } else {
+    track.covariance += Diagonal(options.hidden_growth * std::sqrt(dt), 10 * options.hidden_growth * std::sqrt(dt));
+  }
+  // Nowhere beyond a table's size, and no rotation is farther than half a turn.
+  const double p = track.covariance.diagonal().head<3>().maxCoeff();
+  if (p > 0.25) track.covariance *= 0.25 / p;
+  track.hidden_for = after;
+  track.velocity.setZero();
+  track.moving = false;
+  track.status = status;
+  track.visible_fraction = 0;
+  track.confidence = status == PartStatus::kLost ? 0 : track.confidence * std::exp(-dt);
+  track.measured_information.setZero();
+}
+
+PartEstimate Publish(const Track& track, const TrackOptions& options) {
+  PartEstimate out;
+  out.X_TP = track.X_TP;
+  out.velocity = track.velocity;
+  out.covariance = track.covariance + Diagonal(options.floor_position, options.floor_rotation);
+  out.visible_fraction = track.visible_fraction;
+  out.status = track.status;
+  out.confidence = track.confidence;
+  return out;
+}
+
+}  // namespace coach

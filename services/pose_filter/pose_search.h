@@ -1,0 +1,39 @@
+// Finds a part in an unexplained blob from nothing: orientations covering SO(3), ranked cheaply, the best refined and
+// scored in full.
+#pragma once
+
+#include <optional>
+
+#include "services/pose_filter/blobs.h"
+#include "services/pose_filter/point_score.h"
+#include "services/pose_filter/refinement.h"
+#include "services/pose_filter/score.h"
+
+namespace coach {
+
+struct PoseSearchOptions {
+  int points = 110;              ///< of the cheap score
+  int refined = 10;              ///< best candidates that are refined
+  int polished = 3;              ///< best of those that are refined again, with their near symmetries
+  double least_agreement = 0.6;  ///< Score::agreement of an accepted pose
+  double least_visible = 0.2;    ///< share of the silhouette that must be open
+};
+
+struct PoseCandidate {
+  Pose X_CP = Pose::Identity();
+  Score score;
+  RefinementResult refinement;
+  double full_samples = 0;  ///< samples that the silhouette would have if nothing hid or cut it
+};
+
+/// Refines a pose and scores it at the end: what every hypothesis goes through before it may win.
+PoseCandidate Polish(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
+                     uint8_t class_bit, const Pose& X_CP, const RefinementOptions& options, RefinementScratch& scratch);
+
+/// Best pose of a part at a blob, or empty if none is good enough.
+/// @param X_TC for resting orientations, which are tried beside the cover of SO(3)
+std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& points, const Observation& observation,
+                                        const OwnerMap& owners, int part, uint8_t class_bit, const Blob& blob,
+                                        const Pose& X_TC, const PoseSearchOptions& options, RefinementScratch& scratch);
+
+}  // namespace coach
