@@ -222,7 +222,10 @@ void RenderedDepth::Reset(const GridRectangle& new_area, float value) {
   stride = (area.width + kPadding - 1) / kPadding * kPadding;
   const size_t size = static_cast<size_t>(stride) * static_cast<size_t>(area.height);
   if (depth.size() < size) depth.resize(size);
-  std::fill_n(depth.begin(), size, value);
+  for (int j = 0; j < area.height; ++j) {
+    std::fill_n(row(j), area.width, value);
+    std::fill(row(j) + area.width, row(j) + stride, kEmpty);
+  }
 }
 
 RenderMesh::RenderMesh(const TriangleMesh& mesh)

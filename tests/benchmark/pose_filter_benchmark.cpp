@@ -6,6 +6,8 @@
 #include <random>
 
 #include "services/pose_filter/depth_renderer.h"
+#include "services/pose_filter/observation_model.h"
+#include "services/pose_filter/process_model.h"
 #include "tests/support/test_meshes.h"
 
 namespace coach {
@@ -65,6 +67,40 @@ void BM_RenderTriangles(benchmark::State& state) {
   state.counters["triangles"] = static_cast<double>(torus.triangles.size());
 }
 BENCHMARK(BM_RenderTriangles)->Arg(64)->Arg(256)->Arg(1024)->Arg(4096)->Arg(10000);
+
+/// A brick's tile against a depth image full of readings.
+void Score(benchmark::State& state, OcclusionForm form) {
+  const RenderMesh mesh(BoxMesh({0.12, 0.03, 0.03}));
+  const PixelGrid grid = SampledGrid(Camera(), static_cast<int>(state.range(0)));
+  RenderedDepth tile;
+  RenderDepth(mesh, grid, Poses(1)[0], tile);
+  const ObservationModel model({}, form);
+  DepthEvidence evidence;
+  model.Prepare(cv::Mat(480, 640, CV_16UC1, cv::Scalar(790)), 0.001, grid, evidence);
+  const std::vector<float> occlusion(evidence.z.size(), 0.1F);
+  for (auto _ : state) benchmark::DoNotOptimize(model.LogLikelihood(evidence, tile, occlusion.data()));
+  Report(state, tile);
+}
+void BM_LikelihoodFull(benchmark::State& state) { Score(state, OcclusionForm::kFull); }
+void BM_LikelihoodPaper(benchmark::State& state) { Score(state, OcclusionForm::kPaper); }
+BENCHMARK(BM_LikelihoodFull)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->ArgName("step");
+BENCHMARK(BM_LikelihoodPaper)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->ArgName("step");
+
+void BM_PrepareEvidence(benchmark::State& state) {
+  const PixelGrid grid = SampledGrid(Camera(), static_cast<int>(state.range(0)));
+  const ObservationModel model({}, OcclusionForm::kFull);
+  const cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(790));
+  DepthEvidence evidence;
+  for (auto _ : state) model.Prepare(depth, 0.001, grid, evidence);
+}
+BENCHMARK(BM_PrepareEvidence)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->ArgName("step")->Unit(benchmark::kMicrosecond);
+
+void BM_Propagate(benchmark::State& state) {
+  Random random(1);
+  MotionState motion;
+  for (auto _ : state) Propagate({}, 1 / 30.0, random, motion);
+}
+BENCHMARK(BM_Propagate);
 
 }  // namespace
 }  // namespace coach
