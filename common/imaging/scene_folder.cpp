@@ -160,15 +160,18 @@ SceneWriter::SceneWriter(fs::path folder, const Options& options) : folder_(std:
   if (!cameras_) Fail(folder_ / "scene_camera.json", "cannot be written");
 }
 
-SceneWriter::~SceneWriter() { cameras_ << (count_ ? "\n}\n" : "{}\n"); }
+SceneWriter::~SceneWriter() { cameras_ << (last_im_id_ >= 0 ? "\n}\n" : "{}\n"); }
 
-void SceneWriter::Write(const Frame& frame) {
+void SceneWriter::Write(const Frame& frame, int im_id) {
   const cv::Size size(frame.camera.width, frame.camera.height);
   if (frame.colour.type() != CV_8UC3 || frame.depth.type() != CV_16UC1 || frame.colour.size() != size ||
       frame.depth.size() != size)
     throw std::invalid_argument("scene writer: a frame needs 8-bit colour and 16-bit depth of the camera's size");
-  const fs::path colour = folder_ / "rgb" / ImageName(count_, options_.jpeg ? ".jpg" : ".png");
-  const fs::path depth = folder_ / "depth" / ImageName(count_, ".png");
+  if (im_id <= last_im_id_)
+    throw std::invalid_argument("scene writer: found im_id " + std::to_string(im_id) + " after " +
+                                std::to_string(last_im_id_) + ", expected a greater one");
+  const fs::path colour = folder_ / "rgb" / ImageName(im_id, options_.jpeg ? ".jpg" : ".png");
+  const fs::path depth = folder_ / "depth" / ImageName(im_id, ".png");
   if (options_.jpeg) {
     const std::vector<uint8_t> bytes = EncodeJpeg(frame.colour, options_.jpeg_quality);
     std::ofstream out(colour, std::ios::binary);
@@ -181,9 +184,9 @@ void SceneWriter::Write(const Frame& frame) {
   const CameraModel& c = frame.camera;
   const json entry = {{"cam_K", {c.fx, 0., c.cx, 0., c.fy, c.cy, 0., 0., 1.}},
                       {"depth_scale", frame.metres_per_unit * 1000}};
-  cameras_ << (count_ ? ",\n" : "{\n") << '"' << count_ << "\": " << entry.dump() << std::flush;
+  cameras_ << (last_im_id_ >= 0 ? ",\n" : "{\n") << '"' << im_id << "\": " << entry.dump() << std::flush;
   if (!cameras_) Fail(folder_ / "scene_camera.json", "cannot be written");
-  ++count_;
+  last_im_id_ = im_id;
 }
 
 }  // namespace coach

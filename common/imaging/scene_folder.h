@@ -70,16 +70,18 @@ class SceneWriter {
   SceneWriter(const SceneWriter&) = delete;
   SceneWriter& operator=(const SceneWriter&) = delete;
 
-  /// Appends a frame; its im_id is the number of frames written before. Both images must be there and of the camera's
+  /// Appends a frame; its im_id is one more than the last, from 0. Both images must be there and of the camera's
   /// size; distortion and time stamps have no place in the format and are not written.
   /// @throws std::invalid_argument for such a frame, std::runtime_error if the disk refuses.
-  void Write(const Frame& frame);
+  void Write(const Frame& frame) { Write(frame, last_im_id_ + 1); }
+  /// The same with an im_id greater than those before: a gap stands for frames that are missing.
+  void Write(const Frame& frame, int im_id);
 
  private:
   std::filesystem::path folder_;
   Options options_;
   std::ofstream cameras_;
-  int count_ = 0;
+  int last_im_id_ = -1;
 };
 
 }  // namespace coach
