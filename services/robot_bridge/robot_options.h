@@ -6,15 +6,9 @@
 
 #include "common/configuration/yaml_reader.h"
 #include "services/robot_bridge/conductor.h"
+#include "services/robot_bridge/screen_server.h"
 
 namespace coach {
-
-struct VirtualRobotOptions {
-  std::string host = "127.0.0.1";  ///< address to listen at; 0.0.0.0 lets tablets of the network in, and needs a token
-  int port = 8765;                 ///< 0: any free one
-  std::string token;               ///< empty: none asked for (loopback only); else pages open by /?token=...
-  int max_pages = 12;              ///< pages and clients attached at once
-};
 
 struct NaoOptions {
   std::string url = "tcp://nao.local:9559";  ///< tcp://host:port or tcps://host:port
