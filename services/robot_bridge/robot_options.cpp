@@ -1,6 +1,7 @@
 #include "services/robot_bridge/robot_options.h"
 
 #include <numbers>
+#include <optional>
 
 namespace coach {
 namespace {
@@ -62,22 +63,20 @@ Pose DefaultRobotPose() {
   return MakePose(Eigen::AngleAxisd(-90 * kDegree, Vector3::UnitZ()).toRotationMatrix(), Vector3(0, 0.5, 0.08));
 }
 
-RobotOptions ReadRobotOptions(const std::optional<YamlNode>& robot) {
+RobotOptions ReadRobotOptions(const YamlNode& robot) {
   RobotOptions options;
-  options.conductor.X_TR = DefaultRobotPose();
-  if (!robot) return options;
-  options.back_end = robot->GetChoice("back_end", options.back_end, {"virtual", "nao", "log"});
-  options.volume = robot->GetInRange("volume", options.volume, 0, 1);
-  options.conductor.X_TR = ReadPose(*robot);
+  options.back_end = robot.GetChoice("back_end", options.back_end, {"virtual", "nao", "log"});
+  options.volume = robot.GetInRange("volume", options.volume, 0, 1);
+  options.conductor.X_TR = ReadPose(robot);
   options.conductor.heartbeat_timeout_s =
-      robot->GetInRange("heartbeat_timeout", options.conductor.heartbeat_timeout_s, 2, 600);
+      robot.GetInRange("heartbeat_timeout", options.conductor.heartbeat_timeout_s, 2, 600);
   GestureOptions& gesture = options.conductor.gesture;
-  gesture.speed_fraction = robot->GetInRange("speed", gesture.speed_fraction, 0.05, 0.3);
-  gesture.child_line = robot->GetInRange("child_line", gesture.child_line, -5, 5);
-  gesture.hand_clearance = robot->GetInRange("hand_clearance", gesture.hand_clearance, 0.05, 1);
-  if (const auto node = robot->Find("virtual")) options.virtual_robot = ReadVirtual(*node);
-  if (const auto node = robot->Find("nao")) options.nao = ReadNao(*node);
-  robot->RejectUnknownKeys();
+  gesture.speed_fraction = robot.GetInRange("speed", gesture.speed_fraction, 0.05, 0.3);
+  gesture.child_line = robot.GetInRange("child_line", gesture.child_line, -5, 5);
+  gesture.hand_clearance = robot.GetInRange("hand_clearance", gesture.hand_clearance, 0.05, 1);
+  if (const auto node = robot.Find("virtual")) options.virtual_robot = ReadVirtual(*node);
+  if (const auto node = robot.Find("nao")) options.nao = ReadNao(*node);
+  robot.RejectUnknownKeys();
   return options;
 }
 

@@ -1,7 +1,6 @@
 // The `robot:` part of the station file.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "common/configuration/yaml_reader.h"
@@ -28,8 +27,8 @@ struct RobotOptions {
 /// The robot opposite the child, half a metre from the middle of the table, low.
 Pose DefaultRobotPose();
 
-/// Reads the options; the node may be missing (all defaults).
+/// Reads the options; it may be an empty map (all defaults).
 /// @throws ConfigurationError naming file, line, key, what was found and expected.
-RobotOptions ReadRobotOptions(const std::optional<YamlNode>& robot);
+RobotOptions ReadRobotOptions(const YamlNode& robot);
 
 }  // namespace coach

@@ -9,7 +9,7 @@ namespace {
 using testing::HasSubstr;
 
 RobotOptions Read(const std::string& yaml) {
-  return ReadRobotOptions(YamlNode::Parse(yaml, "station.yaml").Find("robot"));
+  return ReadRobotOptions(YamlNode::Parse(yaml, "station.yaml").At("robot"));
 }
 
 std::string ErrorOf(const std::string& yaml) {
@@ -22,7 +22,7 @@ std::string ErrorOf(const std::string& yaml) {
 }
 
 TEST(RobotOptionsTest, MissingPartIsAllDefaults) {
-  const RobotOptions options = Read("bus: {}\n");
+  const RobotOptions options = Read("robot: {}\n");
   EXPECT_EQ(options.back_end, "virtual");
   // The robot faces the child: its front is -y of the table.
   EXPECT_LT((options.conductor.X_TR.linear().col(0) - Vector3(0, -1, 0)).norm(), 1e-12);
