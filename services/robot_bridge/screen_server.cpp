@@ -172,6 +172,10 @@ ScreenServer::ScreenServer(const VirtualRobotOptions& options) : impl_(std::make
   impl_->server.set_keep_alive_timeout(2);
   impl_->server.set_write_timeout(5);
   impl_->server.set_tcp_nodelay(true);
+  impl_->server.set_socket_options([](socket_t socket) {  // the library's default would let two servers share the port
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
   impl_->Route();
   impl_->port = options.port == 0 ? impl_->server.bind_to_any_port(options.host)
                                   : (impl_->server.bind_to_port(options.host, options.port) ? options.port : -1);

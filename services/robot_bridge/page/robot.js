@@ -67,8 +67,7 @@ function drawTorso(breath) {
   out += tag("path", { d: `M228 ${y - 70}Q300 ${y - 30} 372 ${y - 70}`, fill: "none", stroke: "#d7e0e8", "stroke-width": 3 });
   out += tag("circle", { cx: 300, cy: y - 8, r: 21, fill: "#fff", stroke: kLine, "stroke-width": 2.5 });
   out += tag("circle", { cx: 300, cy: y - 8, r: 12, fill: kCoral });
-  out += tag("path", { d: "M262 284h76v30q-38 16-76 0z", fill: "#dbe4ec" });  // neck
-  return out;
+  return tag("path", { d: `M268 ${y - 150}h64v40h-64z`, fill: "#c3d0db" }) + out;  // the neck behind
 }
 
 /// A place on the head's ball: its middle on the screen, and how much it is seen from the side.
@@ -125,11 +124,11 @@ function drawHead(body, look) {
   const centre = project(add(kHeadCentre, apply(head, [0.012, 0, 0])));
   const ears = [-1, 1].map((side) => ({ side, behind: onHead(head, side * Math.PI / 2, 0).facing < 0.12 }));
   let out = ears.filter((ear) => ear.behind).map((ear) => drawEar(head, ear.side)).join("");
-  const top = onHead(head, 0, 1.36, 0.112);
+  const top = onHead(head, 0, 1.4, 0.096);
   out += tag("ellipse", { cx: n(top.x), cy: n(top.y), rx: 30, ry: 15, fill: kCoral });
   out += tag("ellipse", { cx: n(centre.x), cy: n(centre.y), rx: 143, ry: 122, fill: "url(#shell)", stroke: kLine, "stroke-width": 2.5 });
-  const shine = onHead(head, 0.35, 0.8);
-  out += tag("ellipse", { cx: n(shine.x), cy: n(shine.y), rx: 40, ry: 15, fill: "#fff", opacity: 0.9 });
+  const shine = onHead(head, 0.3, 0.62, 0.1);
+  out += tag("ellipse", { cx: n(shine.x), cy: n(shine.y), rx: 34, ry: 11, fill: "#fff" });
   for (const side of [-1, 1]) {
     const cheek = onHead(head, side * 0.72, -0.28);
     if (cheek.facing > 0.15) {

@@ -1,7 +1,7 @@
 // The live picture of the table from above: parts, hands, the robot at its place and where it points.
 import { add, apply, rotationOf } from "/body.js";
 
-const kView = { left: -0.46, right: 0.46, near: -0.36, far: 0.56 };  // m, table frame: what must be seen
+const kView = { left: -0.46, right: 0.46, near: -0.34, far: 0.62 };  // m, table frame: what must be seen
 const kLight = [0.35, -0.45, 0.82];
 
 export class Table {
@@ -124,7 +124,8 @@ export class Table {
     context.lineJoin = "round";
     for (const triangle of triangles) {
       const normal = normalOf(triangle);
-      const light = 0.72 + 0.34 * Math.max(0, normal[0] * kLight[0] + normal[1] * kLight[1] + normal[2] * kLight[2]);
+      const lift = 6 * ((triangle[0][2] + triangle[1][2] + triangle[2][2]) / 3 - part.position[2]);  // lower faces are darker
+      const light = 0.72 + Math.max(-0.14, Math.min(0.14, lift)) + 0.34 * Math.max(0, normal[0] * kLight[0] + normal[1] * kLight[1] + normal[2] * kLight[2]);
       context.fillStyle = context.strokeStyle = shade(colour, light);
       context.lineWidth = 0.8;
       this.outline(context, [triangle]);
@@ -159,6 +160,13 @@ export class Table {
     context.stroke();
   }
 
+  dot(context, p, r, colour) {
+    context.fillStyle = colour;
+    context.beginPath();
+    context.arc(...this.at(p), r, 0, 2 * Math.PI);
+    context.fill();
+  }
+
   drawRobot(context, body) {
     const unit = this.scale / 100;
     const head = body.head();
@@ -173,15 +181,12 @@ export class Table {
       this.limb(context, this.toTable(arm.shoulder), this.toTable(arm.elbow), 4.6 * unit, "#f2f6f9");
       this.limb(context, this.toTable(arm.elbow), this.toTable(arm.hand), 4.2 * unit, "#ffffff");
     }
-    context.fillStyle = "#ffffff";
-    context.beginPath();
-    context.arc(...this.at(middle), 6.6 * unit, 0, 2 * Math.PI);
-    context.fill();
+    this.dot(context, middle, 6.6 * unit, "#ffffff");
     context.restore();
     for (const side of [1, -1]) {  // ears and eyes show where it looks
       const ear = this.toTable(apply(head, [0, side * 0.066, 0])), eye = this.toTable(apply(head, [0.05, side * 0.028, 0]));
-      this.limb(context, ear, ear, 3 * unit, "#e8734a");
-      this.limb(context, eye, eye, 2.2 * unit, "#24374a");
+      this.dot(context, ear, 1.9 * unit, "#e8734a");
+      this.dot(context, eye, 1.2 * unit, "#24374a");
     }
   }
 
