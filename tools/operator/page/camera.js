@@ -1,0 +1,120 @@
+// The live picture with the parts' outlines and names.
+import {byId, element, readable, rebuild, swatch} from './dom.js';
+import {colourOf} from './colours.js';
+import {t} from './words.js';
+
+const TRACKED = 0, OCCLUDED = 1, LOST = 3;
+const canvas = byId('camera-canvas'), context = canvas.getContext('2d', {alpha: false});
+let decoding = false, last = null;
+const times = [];
+
+/** Shows a view. A picture that comes while another is being decoded is left out. */
+export async function showView(view, jpeg, task) {
+  if (decoding) return;
+  if (jpeg) {
+    decoding = true;
+    try {
+      const picture = await createImageBitmap(new Blob([jpeg], {type: 'image/jpeg'}));
+      last?.close?.();
+      last = picture;
+      countPicture();
+      draw(picture, view, task);
+      byId('camera-note').hidden = true;
+    } catch { /* a broken picture is followed by the next */ }
+    decoding = false;
+  }
+  showParts(view, task);
+}
+
+function countPicture() {
+  const now = performance.now();
+  times.push(now);
+  while (times.length && now - times[0] > 2000) times.shift();
+}
+
+/** Pictures a second over the last two seconds. */
+export function pictureRate() {
+  const now = performance.now();
+  while (times.length && now - times[0] > 2000) times.shift();
+  return times.length / 2;
+}
+
+function draw(picture, view, task) {
+  if (canvas.width !== picture.width || canvas.height !== picture.height) {
+    canvas.width = picture.width;
+    canvas.height = picture.height;
+  }
+  context.drawImage(picture, 0, 0);
+  if (!task?.parts || task.parts.length !== view.parts.length) return;
+  const unit = picture.width / 640;
+  const named = [];
+  view.parts.forEach((part, index) => {
+    if (!part.outlines.length) return;
+    const colour = colourOf(task.types[task.parts[index].type]);
+    drawOutline(part, colour, unit);
+    named.push({part, name: readable(task.parts[index].name), colour});
+  });
+  placeNames(named, unit);
+}
+
+function drawOutline(part, colour, unit) {
+  const path = new Path2D();
+  for (const polygon of part.outlines) {
+    for (let k = 0; k < polygon.length; k += 2) k ? path.lineTo(polygon[k], polygon[k + 1]) : path.moveTo(polygon[0], polygon[1]);
+    path.closePath();
+  }
+  context.lineJoin = 'round';
+  context.setLineDash(part.status === TRACKED ? [] : part.status === OCCLUDED ? [7 * unit, 5 * unit] : [2 * unit, 5 * unit]);
+  context.strokeStyle = 'rgb(255 255 255 / 0.9)';
+  context.lineWidth = 4 * unit;
+  context.stroke(path);
+  context.strokeStyle = part.status === LOST ? '#b3261e' : colour;
+  context.lineWidth = 2.2 * unit;
+  context.stroke(path);
+  context.setLineDash([]);
+}
+
+/** Names sit in the middle of their parts and are moved down until they don't cover each other. */
+function placeNames(named, unit) {
+  context.font = `600 ${13 * unit}px system-ui, "Noto Sans", "Liberation Sans", "DejaVu Sans", sans-serif`;
+  context.textBaseline = 'middle';
+  const taken = [];
+  for (const {part, name, colour} of named.sort((a, b) => middle(a.part)[1] - middle(b.part)[1])) {
+    const [x, y] = middle(part);
+    const width = context.measureText(name).width + 26 * unit, height = 22 * unit;
+    const box = {x: Math.min(Math.max(x - width / 2, 2), canvas.width - width - 2), y: Math.max(y - height / 2, 2), width, height};
+    for (const other of taken) {
+      const apart = box.x + width < other.x || other.x + other.width < box.x;
+      if (!apart && Math.abs(box.y - other.y) < height) box.y = other.y + height + 2 * unit;
+    }
+    taken.push(box);
+    context.fillStyle = part.status === TRACKED ? 'rgb(255 255 255 / 0.92)' : 'rgb(255 255 255 / 0.7)';
+    context.beginPath();
+    context.roundRect(box.x, box.y, width, height, height / 2);
+    context.fill();
+    context.fillStyle = colour;
+    context.beginPath();
+    context.arc(box.x + 11 * unit, box.y + height / 2, 4.5 * unit, 0, 7);
+    context.fill();
+    context.fillStyle = '#1d2a2a';
+    context.fillText(name, box.x + 19 * unit, box.y + height / 2 + unit);
+  }
+}
+
+function middle(part) {
+  let left = Infinity, right = -Infinity, top = Infinity, bottom = -Infinity;
+  for (const polygon of part.outlines) {
+    for (let k = 0; k < polygon.length; k += 2) {
+      left = Math.min(left, polygon[k]); right = Math.max(right, polygon[k]);
+      top = Math.min(top, polygon[k + 1]); bottom = Math.max(bottom, polygon[k + 1]);
+    }
+  }
+  return [(left + right) / 2, (top + bottom) / 2];
+}
+
+function showParts(view, task) {
+  if (!task?.parts || task.parts.length !== view.parts.length) return;
+  rebuild(byId('parts'), [task.revision, document.documentElement.lang, view.parts.map((part) => part.status)], () =>
+    task.parts.map((part, index) => element('li', {},
+      swatch(colourOf(task.types[part.type])), readable(part.name), element('small', {}, t(`status.${view.parts[index].status}`)))));
+}

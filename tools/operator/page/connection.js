@@ -1,0 +1,66 @@
+// The page's side of page_server.h: state, live view, commands. Reconnects for ever.
+
+/** Calls `onState(state)` for every state and `onAlive(boolean)` when the connection comes or goes. */
+export function listenToState(onState, onAlive) {
+  const source = new EventSource('api/events');
+  source.onopen = () => onAlive(true);
+  source.onerror = () => {
+    onAlive(false);
+    if (source.readyState === EventSource.CLOSED) setTimeout(() => listenToState(onState, onAlive), 1000);
+  };
+  source.onmessage = (event) => { onAlive(true); onState(JSON.parse(event.data)); };
+}
+
+/** Calls `onView(view, jpeg)` for every live view; `jpeg` is null if there is no picture. */
+export async function listenToView(onView) {
+  for (;;) {
+    try {
+      const response = await fetch('api/live', {cache: 'no-store'});
+      if (response.ok) await readRecords(response.body.getReader(), onView);
+    } catch { /* the banner of the state's connection says it */ }
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+  }
+}
+
+async function readRecords(reader, onView) {
+  let buffer = new Uint8Array(0);
+  const text = new TextDecoder();
+  for (;;) {
+    const {value, done} = await reader.read();
+    if (done) return;
+    const joined = new Uint8Array(buffer.length + value.length);
+    joined.set(buffer);
+    joined.set(value, buffer.length);
+    buffer = joined;
+    let record;
+    while ((record = firstRecord(buffer))) {
+      if (record.json.length) onView(JSON.parse(text.decode(record.json)), record.jpeg.length ? record.jpeg.slice() : null);
+      buffer = buffer.subarray(record.size);
+    }
+  }
+}
+
+function firstRecord(buffer) {
+  const view = new DataView(buffer.buffer, buffer.byteOffset, buffer.length);
+  if (buffer.length < 4) return null;
+  const jsonSize = view.getUint32(0, true);
+  if (buffer.length < 8 + jsonSize) return null;
+  const jpegSize = view.getUint32(4 + jsonSize, true);
+  const size = 8 + jsonSize + jpegSize;
+  if (buffer.length < size) return null;
+  return {json: buffer.subarray(4, 4 + jsonSize), jpeg: buffer.subarray(8 + jsonSize, size), size};
+}
+
+export async function fetchTask() {
+  return (await fetch('api/task', {cache: 'no-store'})).json();
+}
+
+/** Sends one thing. @return {id} or {error} */
+export async function post(path, body) {
+  try {
+    const response = await fetch(path, {method: 'POST', headers: {'Content-Type': 'application/json', 'X-Coach': '1'}, body: JSON.stringify(body)});
+    return await response.json();
+  } catch {
+    return {error: null};
+  }
+}
