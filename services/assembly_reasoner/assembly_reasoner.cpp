@@ -7,6 +7,7 @@
 namespace coach {
 namespace {
 
+constexpr int64_t kLongestGap = 200000;   // us without evidence after which a decision has to mature anew
 constexpr double kReportedBelief = 0.05;  // connections less probable than this are not told to the filter
 
 AssemblyBeliefOptions BeliefOptions(const AssemblyReasonerOptions& options) {
@@ -41,7 +42,7 @@ struct AssemblyReasoner::Impl {
   Placement placement;
   struct Pending {
     int label = kOpenLabel;
-    int64_t start = 0;
+    int64_t start = 0, last = 0;  ///< us
   };
   std::map<PairKey, Pending> pending;
   std::map<PairKey, int> pinned;  ///< labels that the operator set and evidence has not confirmed yet
@@ -168,8 +169,9 @@ void AssemblyReasoner::Impl::DecideAll(int64_t now, std::vector<ConnectionEvent>
       pending.erase(pair);
       continue;
     }
-    const auto [entry, is_new] = pending.try_emplace(pair, Pending{best, now});
-    if (entry->second.label != best) entry->second = {best, now};
+    const auto [entry, is_new] = pending.try_emplace(pair, Pending{best, now, now});
+    if (entry->second.label != best || now - entry->second.last > kLongestGap) entry->second = {best, now, now};
+    entry->second.last = now;
     if (static_cast<double>(now - entry->second.start) * 1e-6 < HoldFor(pair, best)) continue;
     pending.erase(pair);
     Change(pair, best, model->ChangeTime(pair.first, pair.second, best, decided, now), now, events);

@@ -28,7 +28,7 @@ struct AssemblyReasonerOptions {
   double decide_probability = 0.9;  ///< of a new label
   double decide_hold = 0.20;        ///< s it has to last
   double wrong_hold = 0.30;         ///< s, the same for a mistake
-  double undo_hold = 0.15;          ///< s, the same for a connection coming apart
+  double undo_hold = 0.22;          ///< s, the same for a connection coming apart
 };
 
 /// One line of the events csv of docs/formats.md.

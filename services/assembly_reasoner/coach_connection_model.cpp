@@ -18,6 +18,7 @@ struct Scale {
 };
 constexpr std::array<Scale, 5> kOpenScales{
     {{0.006, 0.02, 0.25}, {0.015, 0.03, 0.2}, {0.006, 0.2, 0.2}, {0.02, 0.2, 0.2}, {0.06, 1.0, 0.15}}};
+constexpr double kUsualRepeats = 0.4;      // share of repeated poses from which on they are normal
 constexpr double kSeatedPosition = 0.004;  // m, a single measurement this near to a joint's pose agrees with it
 constexpr double kSeatedAngle = 0.07;      // rad, the same
 
@@ -43,6 +44,7 @@ class CoachConnectionModel : public ConnectionModel {
     const bool placed = IsPlaced(*view.a) && IsPlaced(*view.b);
     if (!placed || visible < options_.smallest_visible) return {};
     if (view.evidence == nullptr) return JudgeApart(view, visible);
+    if (Frozen(view.part_a, *view.a, view.utime) || Frozen(view.part_b, *view.b, view.utime)) return {};
     const PairEvidence& pair = *view.evidence;
     RelativePoseWindow& window = windows_[{view.part_a, view.part_b}];
     window.Add({view.utime, pair.X_AB, pair.covariance, pair.motion[0], pair.motion[1]});
@@ -87,6 +89,23 @@ class CoachConnectionModel : public ConnectionModel {
   }
 
  private:
+  /// A pose that repeats to the last bit though it hardly ever does is a tracker that hangs, not a measurement.
+  struct Repeats {
+    int64_t utime = 0;
+    Pose X_TP = Pose::Identity();
+    double share = 0;  ///< of recent frames that repeated
+    bool now = false;
+  };
+  bool Frozen(int part, const PartEstimate& estimate, int64_t utime) {
+    Repeats& r = repeats_[part];
+    if (r.utime != utime) {
+      r.now = r.utime != 0 && (r.X_TP.matrix() - estimate.X_TP.matrix()).cwiseAbs().maxCoeff() < 1e-12;
+      r.share += 0.03 * ((r.now ? 1 : 0) - r.share);
+      r.X_TP = estimate.X_TP;
+      r.utime = utime;
+    }
+    return r.now && r.share < kUsualRepeats;
+  }
   static bool IsPlaced(const PartEstimate& part) {
     return part.status == PartStatus::kTracked || part.status == PartStatus::kOccluded;
   }
@@ -193,6 +212,7 @@ class CoachConnectionModel : public ConnectionModel {
   const ContactTable& contacts_;
   CoachConnectionModelOptions options_;
   std::map<std::pair<int, int>, RelativePoseWindow> windows_;
+  std::map<int, Repeats> repeats_;
 };
 
 }  // namespace

@@ -8,7 +8,11 @@ namespace coach {
 namespace {
 
 constexpr double kMicro = 1e-6;
+constexpr int64_t kMotionTime = 500000;     // us, over which PairEvidence::motion is measured
 constexpr double kMedianVariance = 1.57;    // pi / 2: variance of a median over that of a mean, normal errors
+constexpr double kTrimmedVariance = 1.1;    // the same for the trimmed mean
+constexpr double kTrim = 2.5;               // robust deviations from the median beyond which a sample does not count
+constexpr double kGrowth = 1.3;             // of the windows that are tried
 constexpr double kMadToDeviation = 1.4826;  // of normal errors
 constexpr double kLongestStep = 0.1;        // s, a longer gap between samples covers no more time than this
 
@@ -20,6 +24,7 @@ double Median(std::vector<double>& values) {
 
 struct Summary {
   Vector6 median = Vector6::Zero();
+  Vector6 trimmed_mean = Vector6::Zero();
   Vector6 deviation = Vector6::Zero();  ///< robust
 };
 
@@ -31,6 +36,14 @@ Summary Summarise(const std::vector<Vector6>& x, size_t begin, size_t end) {
     s.median[axis] = Median(values);
     for (size_t i = begin; i < end; ++i) values[i - begin] = std::abs(x[i][axis] - s.median[axis]);
     s.deviation[axis] = kMadToDeviation * Median(values);
+    double sum = 0;
+    int n = 0;
+    for (size_t i = begin; i < end; ++i) {
+      if (std::abs(x[i][axis] - s.median[axis]) > kTrim * s.deviation[axis] + 1e-9) continue;
+      sum += x[i][axis];
+      ++n;
+    }
+    s.trimmed_mean[axis] = sum / n;
   }
   return s;
 }
@@ -62,16 +75,13 @@ std::optional<RelativePoseEstimate> RelativePoseWindow::Estimate(int64_t now) co
   const Pose& reference = samples_.back().X_AB;
   std::vector<Vector6> x;  // newest first, grows with the window
   Matrix6 sum = Matrix6::Zero();
-  double travel = 0, turn = 0;
   size_t next = samples_.size();
-  for (double window = options_.shortest; window <= options_.longest * 1.001; window *= 2) {
+  for (double window = options_.shortest; window <= options_.longest * 1.001; window *= kGrowth) {
     const int64_t begin = now - static_cast<int64_t>(window / kMicro);
     for (; next > 0 && samples_[next - 1].utime > begin; --next) {
       const RelativePoseSample& s = samples_[next - 1];
       x.push_back(Difference(reference, s.X_AB));
       sum += s.covariance;
-      travel = std::max(travel, s.travel);
-      turn = std::max(turn, s.turn);
     }
     if (x.empty()) return best;
     const Matrix6 mean_covariance = sum / static_cast<double>(x.size());
@@ -91,11 +101,15 @@ std::optional<RelativePoseEstimate> RelativePoseWindow::Estimate(int64_t now) co
       }
     }
     RelativePoseEstimate estimate;
-    estimate.X_AB = Perturb(reference, all.median);
-    estimate.covariance = wide * (independent > 1 ? std::min(1.0, kMedianVariance / independent) : 1.0);
+    estimate.X_AB = Perturb(reference, all.trimmed_mean);
+    estimate.covariance = wide * (independent > 1 ? std::min(1.0, kTrimmedVariance / independent) : 1.0);
     estimate.constant_for = covered;
-    estimate.travel = travel;
-    estimate.turn = turn;
+    // A sample's motion is that of the half second before it, which has to lie in the window.
+    for (size_t i = next; i < samples_.size(); ++i) {
+      if (samples_[i].utime < samples_[next].utime + kMotionTime) continue;
+      estimate.travel = std::max(estimate.travel, samples_[i].travel);
+      estimate.turn = std::max(estimate.turn, samples_[i].turn);
+    }
     best = estimate;
   }
   return best;

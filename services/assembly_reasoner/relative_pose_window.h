@@ -1,10 +1,10 @@
 // What a stretch of measurements says of the relative pose of two parts: a robust mean over the longest recent window
 // in which it did not change, with the covariance of that mean.
 //
-// A tracker's errors are correlated in time, sometimes frozen, sometimes a jump of a few frames. So: medians (a jump
-// shorter than half the window changes nothing), repeated values are no new evidence, n measurements count as
-// (time covered) / (2 correlation times) independent ones, and the spread seen overrides a covariance that is too
-// small.
+// A tracker's errors are correlated in time, sometimes frozen, sometimes a jump of a few frames. So: medians and
+// trimmed means (a jump shorter than half the window changes nothing), repeated values are no new evidence, n
+// measurements count as (time covered) / (2 correlation times) independent ones, and the spread seen overrides a
+// covariance that is too small.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace coach {
 
 struct RelativePoseWindowOptions {
   double correlation_time = 0.10;   ///< s, of the tracker's errors
-  double shortest = 0.15;           ///< s, first window tried; each next one is twice as long
+  double shortest = 0.15;           ///< s, first window tried; each next one is 30 % longer
   double longest = 2.4;             ///< s
   double history = 8.0;             ///< s, kept for dating a change
   double change_position = 0.0015;  ///< m, difference of the two halves of a window that is no change
@@ -37,7 +37,7 @@ struct RelativePoseEstimate {
   Pose X_AB = Pose::Identity();
   Matrix6 covariance = Matrix6::Identity();
   double constant_for = 0;  ///< s, length of the window
-  double travel = 0;        ///< m, largest motion of A within half a second during the window
+  double travel = 0;        ///< m, largest motion of A within half a second inside the window
   double turn = 0;          ///< rad
 };
 

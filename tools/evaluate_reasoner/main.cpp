@@ -42,8 +42,8 @@ void PrintEvents(const ScriptedLesson& lesson, const std::vector<ConnectionEvent
     std::printf("  true %7.2f (due %7.2f) %-10s %s %d-%d\n", Seconds(e.moment), Seconds(e.due), e.type.c_str(),
                 e.names.empty() ? "" : e.names[0].c_str(), e.part_a, e.part_b);
   for (const ConnectionEvent& e : said)
-    std::printf("  said %7.2f (at  %7.2f) %-10s %s %d-%d p %.2f\n", Seconds(e.since), Seconds(e.decided), e.type.c_str(),
-                e.name.c_str(), e.part_a, e.part_b, e.probability);
+    std::printf("  said %7.2f (at  %7.2f) %-10s %s %d-%d p %.2f\n", Seconds(e.since), Seconds(e.decided),
+                e.type.c_str(), e.name.c_str(), e.part_a, e.part_b, e.probability);
 }
 
 void PrintRow(const std::string& task, double noise, const char* model, const EventScore& s, int lessons,

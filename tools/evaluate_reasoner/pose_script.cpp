@@ -31,6 +31,19 @@ double Uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
+/// Of X_AB for independent errors of both parts in the table frame.
+Matrix6 RelativeCovariance(const PartEstimate& a, const PartEstimate& b) {
+  const Matrix3 R_AT = a.X_TP.linear().transpose();
+  const Vector3 d = b.X_TP.translation() - a.X_TP.translation();
+  Matrix3 D;
+  D << 0, -d.z(), d.y(), d.z(), 0, -d.x(), -d.y(), d.x(), 0;
+  Matrix6 J = Matrix6::Zero();
+  J.topLeftCorner<3, 3>() = -R_AT;
+  J.topRightCorner<3, 3>() = R_AT * D;
+  J.bottomRightCorner<3, 3>() = -R_AT;
+  return J * a.covariance * J.transpose() + RotateCovariance(R_AT, b.covariance);
+}
+
 /// The errors of one part over time.
 class PartErrors {
  public:
@@ -307,11 +320,7 @@ class Stage {
     pair.part_a = a;
     pair.part_b = b;
     pair.X_AB = out.parts[a].X_TP.inverse() * out.parts[b].X_TP;
-    const Pose X_AT = out.parts[a].X_TP.inverse();
-    pair.covariance = errors_[a].Covariance() + errors_[b].Covariance();
-    // A's turn moves B's origin by the lever between them.
-    const double lever = (X_AT * out.parts[b].X_TP.translation()).norm();
-    pair.covariance.topLeftCorner<3, 3>() += 0.67 * lever * lever * errors_[a].Covariance().bottomRightCorner<3, 3>();
+    pair.covariance = RelativeCovariance(out.parts[a], out.parts[b]);
     const size_t half_second = static_cast<size_t>(0.5 / dt_);
     const std::vector<Pose>& then = truth_[truth_.size() > half_second ? truth_.size() - 1 - half_second : 0];
     const Vector6 moved = Difference(then[a], X_[a]);
@@ -346,6 +355,16 @@ class Stage {
   int64_t now_ = 1000000;
   ScriptedLesson lesson_;
 };
+
+/// Not also the beginning of a variant.
+bool IsOnlyWrong(const Task& task, int mistake) {
+  const Mistake& m = task.mistakes[mistake];
+  for (const Connection& c : task.connections) {
+    const bool same_types = task.slots[c.slot_a].type == m.type_a && task.slots[c.slot_b].type == m.type_b;
+    if (same_types && Difference(c.X_AB, m.X_AB).norm() < 0.01) return false;
+  }
+  return true;
+}
 
 /// Parts with no joint yet, of a type.
 int FreePart(const Task& task, int type, const std::vector<bool>& used, int other, std::mt19937_64& random) {
@@ -393,7 +412,7 @@ std::vector<ScriptAction> RandomScript(const Task& task, const ScriptOptions& op
   for (const ScriptAction& step : PlainScript(task, order, part_in_slot)) {
     if (!task.mistakes.empty() && Uniform(random, 0, 1) < options.mistakes) {
       const int m = std::uniform_int_distribution<int>(0, static_cast<int>(task.mistakes.size()) - 1)(random);
-      const int a = FreePart(task, task.mistakes[m].type_a, used, -1, random);
+      const int a = IsOnlyWrong(task, m) ? FreePart(task, task.mistakes[m].type_a, used, -1, random) : -1;
       const int b = FreePart(task, task.mistakes[m].type_b, used, a, random);
       if (a >= 0 && b >= 0) {
         out.push_back({ScriptAction::Kind::kMistake, m, a, b});
