@@ -53,7 +53,7 @@ class CoachConnectionModel : public ConnectionModel {
     PairVerdict verdict;
     verdict.has_evidence = true;
     const auto& classes = Classes(view.part_a, view.part_b);
-    const double weight = std::clamp(visible / options_.trusted_visible, 0.2, 1.0);
+    const double weight = std::clamp(visible / options_.full_visible, 0.3, 1.0);
     double best = -1e9;
     for (const ContactClass& contact : classes) {
       double odds = LogOdds(contact, *estimate);
@@ -117,7 +117,7 @@ class CoachConnectionModel : public ConnectionModel {
   /// are proof, as poses may stem from an enforced connection.
   PairVerdict JudgeApart(const PairView& view, double visible) const {
     PairVerdict verdict;
-    if (visible < options_.trusted_visible) return verdict;
+    if (visible < options_.apart_visible) return verdict;
     const Pose X_AB = view.a->X_TP.inverse() * view.b->X_TP;
     for (const ContactClass& contact : Classes(view.part_a, view.part_b)) {
       const bool far = NearestContact(contact, X_AB).xi.head<3>().norm() > options_.far_distance;

@@ -47,7 +47,8 @@ struct CoachConnectionModelOptions {
   double slack_position = 0.0010;  ///< m, play of a made joint and constant bias of the tracker, standard deviation
   double slack_angle = 0.020;      ///< rad, the same
   double smallest_visible = 0.05;  ///< visible fraction of either part under which a frame says nothing
-  double trusted_visible = 0.30;   ///< from here on evidence counts in full
+  double full_visible = 0.12;      ///< from here on evidence counts in full; its precision is in the covariance
+  double apart_visible = 0.30;     ///< of both parts, for a missing pair to mean that they are apart
   double largest_log_odds = 10;    ///< nats, of one judgement
   double far_distance = 0.020;     ///< m from every class: certainly open, if both parts are visible and no pair given
   double together_travel = 0.025;  ///< m that a pair moves as one before that counts
