@@ -57,7 +57,7 @@ float Milliseconds(double us) { return static_cast<float>(us * 1e-3); }
 Node::Node(const NodeOptions& options) : options_(options), bus_(std::make_unique<Bus>(options.url, options.station)) {
   if (!options.output_url.empty()) output_ = std::make_unique<Bus>(options.output_url, options.station);
   bus_->Subscribe<operator_command_t>([this](const operator_command_t& m) { HandleOperatorCommand(m); });
-  if (!lockstep()) bus_->Subscribe<service_health_t>([this](const service_health_t& m) { HandleHealth(m); });
+  if (!bus_->lockstep()) bus_->Subscribe<service_health_t>([this](const service_health_t& m) { HandleHealth(m); });
   stop_asked = false;
   wake_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   SetSignals(HandleSignal);
@@ -129,13 +129,13 @@ void Node::Run(const std::function<void()>& step) {
     if (stop_asked) break;
     CallStep(step);
     if (!alive) break;
-    if (!lockstep()) PublishByTheClock();
+    if (!bus_->lockstep()) PublishByTheClock();
   }
   NotifySystemd("STOPPING=1");
 }
 
 void Node::Wait() {
-  if (lockstep()) return;
+  if (bus_->lockstep()) return;
   std::vector<pollfd> fds{{wake_fd, POLLIN, 0}, {bus_->file_descriptor(), POLLIN, 0}};
   for (const auto& bus : joined_) fds.push_back({bus->file_descriptor(), POLLIN, 0});
   poll(fds.data(), fds.size(), options_.period_ms);
@@ -174,7 +174,7 @@ void Node::PublishByTheClock() {
     last_health_ = now;
     Publish(Health());
   }
-  if (now - last_config_ >= 10 * kSecond || last_config_ == 0) {
+  if (!lockstep() && (now - last_config_ >= 10 * kSecond || last_config_ == 0)) {
     last_config_ = now;
     PublishConfiguration();
   }

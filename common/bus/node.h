@@ -20,6 +20,7 @@ struct NodeOptions {
   std::string url;              ///< network; see Bus
   std::string output_url;       ///< where messages go instead, e.g. file:///out.lcm?mode=w; empty: to `url`
   std::string configuration;    ///< text of the station file, for CONFIG
+  bool lockstep = false;        ///< keep wall time out of the output, as a recording as `url` does
   bool expects_frames = false;  ///< DEGRADED when no input came for 1 s
   int period_ms = 100;          ///< longest time between two calls of the step function
 };
@@ -27,9 +28,9 @@ struct NodeOptions {
 /// Everything a service's main() needs of the bus. One thread; only Wake() and Stop() may be called from others (Stop()
 /// from signal handlers too).
 ///
-/// Lockstep: a recording as `url` is worked through message by message, each followed by one call of the step function;
-/// then wall time is 0, every received_utime that is published is 0, and nothing is published by the clock
-/// (SERVICE_HEALTH is not, CONFIG once), so the same recording gives the same output.
+/// Lockstep: a recording as `url` is worked through message by message, each followed by one call of the step function.
+/// Then, or if NodeOptions::lockstep says so, wall time is 0, every received_utime that is published is 0, and CONFIG
+/// is published once, so that the same input gives the same output. (SERVICE_HEALTH is no part of that promise.)
 class Node {
  public:
   /// Opens the networks and starts listening for SIGTERM and SIGINT. At most one Node a process may run at a time.
@@ -84,7 +85,7 @@ class Node {
   void Wake();  ///< another thread has work for `step`
   bool stopping() const;
 
-  bool lockstep() const { return bus_->lockstep(); }
+  bool lockstep() const { return options_.lockstep || bus_->lockstep(); }
   int64_t Now() const;  ///< us since 1970; 0 in lockstep
   const std::string& station() const { return options_.station; }
   const std::string& service() const { return options_.service; }
