@@ -1,0 +1,49 @@
+// The tracker on the bus.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "common/bus/frame_joiner.h"
+#include "common/bus/node.h"
+#include "services/pose_filter/pose_filter.h"
+#include "services/pose_filter/state_file.h"
+
+namespace coach {
+
+struct PoseFilterServiceOptions {
+  std::filesystem::path state_file;  ///< written once a second; empty: nothing is kept
+  int belief_frames = 5;             ///< CONNECTION_BELIEF of up to so many frames ago is handed to the filter
+};
+
+/// Steps when DEPTH_IMAGE and DETECTIONS of one utime are there, or without DETECTIONS as soon as the next DEPTH_IMAGE
+/// is (FrameJoiner).
+class PoseFilterService {
+ public:
+  PoseFilterService(const NodeOptions& node, const Task& task, std::unique_ptr<PoseFilter> filter,
+                    const PoseFilterServiceOptions& options);
+  void Run();
+  Node& node() { return node_; }
+
+ private:
+  void Step();
+  void Answer(const depth_image_t& depth, const std::unique_ptr<detections_t>& detections);
+  void BeginAgain();
+  void KeepState(const PartPoses& poses);
+
+  std::unique_ptr<PoseFilter> filter_;
+  PoseFilterServiceOptions options_;
+  std::string task_sha256_;
+  size_t num_parts_;
+  FrameJoiner<depth_image_t, detections_t> frames_;
+  int64_t dropped_seen_ = 0;
+  std::optional<ConnectionBelief> belief_;
+  std::vector<int64_t> recent_utimes_;  ///< of the last steps, for the age of the belief
+  std::optional<FilterState> state_;    ///< of the last step
+  int64_t last_state_ = 0;              ///< us, steady clock
+  Node node_;
+};
+
+}  // namespace coach
