@@ -7,7 +7,7 @@ namespace coach {
 
 const std::vector<Blob>& BlobFinder::FindUnexplained(const Observation& o, const OwnerMap& owners,
                                                      const std::vector<int>& class_of_part, int num_classes,
-                                                     const Pose& X_TC) {
+                                                     const Pose& X_TC, const TableArea& area) {
   blobs_.clear();
   if (!o.class_map) return blobs_;
   constexpr int kStep = Blob::kStep;
@@ -15,7 +15,6 @@ const std::vector<Blob>& BlobFinder::FindUnexplained(const Observation& o, const
   height_ = o.camera.height / kStep;
   open_.assign(static_cast<size_t>(width_) * height_, 0);
   depth_.assign(open_.size(), 0.0f);
-  const Plane table = PlaneOf(X_TC);
   for (int j = 0; j < height_; ++j) {
     const int y = j * kStep + kStep / 2;
     for (int i = 0; i < width_; ++i) {
@@ -25,8 +24,8 @@ const std::vector<Blob>& BlobFinder::FindUnexplained(const Observation& o, const
       const float z = o.Depth(x, y);
       if (z > 0) {
         if (z > options_.farthest) continue;
-        const double h = table.Height({(x - o.camera.cx) / o.camera.fx * z, (y - o.camera.cy) / o.camera.fy * z, z});
-        if (h < options_.lowest || h > options_.highest) continue;
+        const Vector3 p_T = X_TC * Vector3((x - o.camera.cx) / o.camera.fx * z, (y - o.camera.cy) / o.camera.fy * z, z);
+        if (p_T.z() < options_.lowest || p_T.z() > options_.highest || !area.Over(p_T)) continue;
       }
       for (const int dx : {0, -kStep, kStep}) {
         for (const int dy : {0, -kStep, kStep}) {

@@ -7,6 +7,7 @@
 #include "common/assembly/part_poses.h"
 #include "services/pose_filter/observation.h"
 #include "services/pose_filter/owner_map.h"
+#include "services/pose_filter/table_area.h"
 #include "services/pose_filter/table_plane.h"
 
 namespace coach {
@@ -32,14 +33,16 @@ struct BlobOptions {
 };
 
 /// Finds blobs of class pixels outside the silhouettes in `owners` (cells of a part whose class is `colour_class` are
-/// explained, with one cell of slack). X_TC places the table. Output is in a fixed order: by class, then scan order.
+/// explained, with one cell of slack). X_TC places the table; only what is over `area` counts. Output is in a fixed
+/// order: by class, then scan order.
 class BlobFinder {
  public:
   explicit BlobFinder(const BlobOptions& options = {}) : options_(options) {}
 
   /// @param class_of_part colour class of each part
   const std::vector<Blob>& FindUnexplained(const Observation& observation, const OwnerMap& owners,
-                                           const std::vector<int>& class_of_part, int num_classes, const Pose& X_TC);
+                                           const std::vector<int>& class_of_part, int num_classes, const Pose& X_TC,
+                                           const TableArea& area);
 
  private:
   void Flood(const Observation& observation, int colour_class, int start);

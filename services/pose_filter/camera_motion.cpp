@@ -53,6 +53,7 @@ void CameraMotion::Start(const Observation& observation, const TableFit& table) 
 void CameraMotion::AddKeyframe(const Observation& o, const OwnerMap* owners) {
   background_.clear();
   keyframe_X_TC_ = X_TC_;
+  AddMarks(o, owners);
   const Plane table = PlaneOf(X_TC_);
   for (int y = options_.grid; y < o.camera.height - options_.grid; y += options_.grid) {
     for (int x = options_.grid; x < o.camera.width - options_.grid; x += options_.grid) {
@@ -69,6 +70,78 @@ void CameraMotion::AddKeyframe(const Observation& o, const OwnerMap* owners) {
       const Vector3 n_C = LocalNormal(o, x, y, z);
       if (n_C.squaredNorm() > 0.5) background_.push_back({X_TC_ * p_C, X_TC_.linear() * n_C});
     }
+  }
+}
+
+void CameraMotion::AddMarks(const Observation& o, const OwnerMap* owners) {
+  marks_.clear();
+  at_keyframe_ = true;
+  if (!o.bgr || !o.depth) return;
+  const int cell = options_.mark_cell;
+  for (int y0 = cell; y0 + 2 * cell < o.camera.height; y0 += cell) {
+    for (int x0 = cell; x0 + 2 * cell < o.camera.width; x0 += cell) {
+      Mark best;
+      for (int y = y0; y < y0 + cell; y += 2) {
+        for (int x = x0; x < x0 + cell; x += 2) {
+          const float gx = 0.5f * (o.Grey(x + 1, y) - o.Grey(x - 1, y)),
+                      gy = 0.5f * (o.Grey(x, y + 1) - o.Grey(x, y - 1));
+          const float g = std::sqrt(gx * gx + gy * gy);
+          if (g > best.gradient) best = {x, y, o.Grey(x, y), g, Vector3::Zero()};
+        }
+      }
+      if (best.gradient < options_.least_gradient) continue;
+      bool part = owners && owners->Owner(best.x, best.y) >= 0;
+      for (const int dx : {-4, 0, 4}) {
+        for (const int dy : {-4, 0, 4}) part |= o.Classes(best.x + dx, best.y + dy) != 0;
+      }
+      const double z = o.Depth(best.x, best.y);
+      if (part || z == 0 || z > 4) continue;
+      best.p_T = X_TC_ * BackProject(o.camera, best.x, best.y, z);
+      marks_.push_back(best);
+    }
+  }
+}
+
+bool CameraMotion::StoodStill(const Observation& o) const {
+  if (!o.bgr || !at_keyframe_ || marks_.size() < 20) return false;
+  changes_.clear();
+  for (const Mark& m : marks_) changes_.push_back(o.Grey(m.x, m.y) - m.grey);
+  std::vector<float>& sorted = sorted_;
+  sorted = changes_;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  const float drift = sorted[sorted.size() / 2];  // exposure and white balance
+  size_t same = 0;
+  for (size_t i = 0; i < marks_.size(); ++i) same += std::abs(changes_[i] - drift) < 5.0f + 0.25f * marks_[i].gradient;
+  return static_cast<double>(same) > options_.still_share * static_cast<double>(marks_.size());
+}
+
+void CameraMotion::AddBrightness(const Observation& o, const Pose& X_TC, double blend, Matrix6& H, Vector6& g) const {
+  if (!o.bgr) return;
+  const Pose X_CT = X_TC.inverse();
+  const double gate = 60 * (1 - blend) + 15 * blend;  // grey levels
+  for (const Mark& m : marks_) {
+    const Vector3 p = X_CT * m.p_T;
+    if (p.z() < 0.1) continue;
+    const double u = o.camera.fx * p.x() / p.z() + o.camera.cx, v = o.camera.fy * p.y() / p.z() + o.camera.cy;
+    const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
+    if (x < 1 || y < 1 || x + 2 >= o.camera.width || y + 2 >= o.camera.height) continue;
+    const double a = u - x, b = v - y;
+    const double g00 = o.Grey(x, y), g10 = o.Grey(x + 1, y), g01 = o.Grey(x, y + 1), g11 = o.Grey(x + 1, y + 1);
+    const double grey = (1 - b) * ((1 - a) * g00 + a * g10) + b * ((1 - a) * g01 + a * g11);
+    const double gu = (1 - b) * (g10 - g00) + b * (g11 - g01), gv = (1 - a) * (g01 - g00) + a * (g11 - g10);
+    const double r = m.grey - grey, t = r / gate;
+    if (std::abs(t) >= 1) continue;
+    // d(grey) / d(p_C), then p_C moves by -R_CT (dt + w x (p_T - t_TC)).
+    const Vector3 d_C =
+        (gu * o.camera.fx * Vector3(1, 0, -p.x() / p.z()) + gv * o.camera.fy * Vector3(0, 1, -p.y() / p.z())) / p.z();
+    const Vector3 d_T = -(X_TC.linear() * d_C);
+    const Vector3 arm = m.p_T - X_TC.translation();
+    Vector6 J;
+    J.head<3>() = d_T;
+    J.tail<3>() = arm.cross(d_T);
+    const double w = (1 - t * t) * (1 - t * t) / (8.0 * 8.0);
+    H.noalias() += w * J * J.transpose();
+    g.noalias() += w * r * J;
   }
 }
 
@@ -110,6 +183,7 @@ bool CameraMotion::Align(const Observation& o, const Pose& start, Pose& X_TC, Ma
       ++used;
     }
     if (used < 100) return false;
+    AddBrightness(o, X_TC, blend, H, g);
     information = H * (200.0 / std::max(200, used));  // neighbouring readings are no independent witnesses
     // Weak prior on the predicted pose holds the directions that nothing constrains.
     Matrix6 prior = Matrix6::Zero();
@@ -129,6 +203,11 @@ void CameraMotion::Step(const Observation& observation, const OwnerMap& owners) 
     covariance_ += Matrix6::Identity() * 1e-7;
     return;
   }
+  if (StoodStill(observation)) {
+    table_seen_ = true;
+    covariance_ = Matrix6::Identity() * 1e-8;
+    return;
+  }
   Pose aligned;
   Matrix6 information;
   int used = 0;
@@ -143,6 +222,7 @@ void CameraMotion::Step(const Observation& observation, const OwnerMap& owners) 
   if (moved.head<3>().norm() < options_.still_position && centre_moved.norm() < options_.still_position) return;
   step_ = X_TC_.inverse() * aligned;
   X_TC_ = aligned;
+  at_keyframe_ = false;
   const Vector6 since = Difference(keyframe_X_TC_, X_TC_);
   if (since.head<3>().norm() > options_.keyframe_position || since.tail<3>().norm() > options_.keyframe_rotation)
     AddKeyframe(observation, &owners);

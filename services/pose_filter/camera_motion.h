@@ -15,6 +15,9 @@ namespace coach {
 struct CameraMotionOptions {
   int grid = 10;  ///< px between background points
   int iterations = 6;
+  int mark_cell = 14;               ///< px; one mark of strong gradient a cell
+  float least_gradient = 10;        ///< grey levels a px, of a mark
+  double still_share = 0.5;         ///< of the marks unchanged: the camera stood still
   double still_position = 0.0005;   ///< m; smaller motions are none
   double still_rotation = 0.0005;   ///< rad
   double keyframe_position = 0.08;  ///< m; the background is renewed after so much motion
@@ -45,6 +48,16 @@ class CameraMotion {
     Vector3 p_T;
     Vector3 n_T;
   };
+  /// A place of strong gradient.
+  struct Mark {
+    int x = 0, y = 0;  // px in the keyframe
+    float grey = 0;
+    float gradient = 0;  // per px
+    Vector3 p_T;
+  };
+  void AddMarks(const Observation& observation, const OwnerMap* owners);
+  void AddBrightness(const Observation& observation, const Pose& X_TC, double blend, Matrix6& H, Vector6& g) const;
+  bool StoodStill(const Observation& observation) const;
   void AddKeyframe(const Observation& observation, const OwnerMap* owners);
   bool Align(const Observation& observation, const Pose& start, Pose& X_TC, Matrix6& information, int& used) const;
 
@@ -57,6 +70,9 @@ class CameraMotion {
   TableFit table_;
   bool table_seen_ = false;
   std::vector<BackgroundPoint> background_;
+  std::vector<Mark> marks_;
+  bool at_keyframe_ = false;  // the camera has not moved since the marks were taken
+  mutable std::vector<float> changes_, sorted_;
 };
 
 }  // namespace coach

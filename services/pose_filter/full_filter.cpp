@@ -13,7 +13,13 @@ ParallelFor SerialFor() {
 }
 
 FullFilter::FullFilter(const Task& task, const FullFilterOptions& options, uint64_t seed, ParallelFor parallel_for)
-    : task_(task), options_(options), seed_(seed), parallel_for_(std::move(parallel_for)), camera_(options.camera) {
+    : task_(task),
+      options_(options),
+      seed_(seed),
+      parallel_for_(std::move(parallel_for)),
+      camera_(options.camera),
+      foreign_(options.foreign),
+      pairs_(task, options.pairs) {
   for (const PartType& type : task_.types) {
     auto shape = std::make_unique<Shape>();
     shape->model = MakePartModel(type);
@@ -25,6 +31,7 @@ FullFilter::FullFilter(const Task& task, const FullFilterOptions& options, uint6
     class_of_part_.push_back(task_.ColourClass(part.type));
     bit_of_part_.push_back(static_cast<uint8_t>(1u << class_of_part_.back()));
   }
+  num_classes_ = task_.NumColourClasses();
   Reset();
 }
 
@@ -34,6 +41,9 @@ void FullFilter::Reset() {
   steps_ = 0;
   camera_.Reset();
   distractors_ = Distractors();
+  area_.Reset();
+  foreign_.Reset();
+  pairs_.Reset();
   tracks_.assign(task_.parts.size(), Track());
   tiles_.assign(task_.parts.size(), DepthTile());
   suggested_.clear();
@@ -55,6 +65,8 @@ PartPoses FullFilter::Step(const FilterInput& input) {
   if (input.depth.type() == CV_16UC1 && input.depth.size() == size && input.depth.isContinuous())
     observation.depth = input.depth.ptr<uint16_t>();
   observation.metres_per_unit = input.metres_per_unit;
+  if (input.colour.type() == CV_8UC3 && input.colour.size() == size && input.colour.isContinuous())
+    observation.bgr = input.colour.ptr<uint8_t>();
   if (input.detections && input.detections->class_map.size() == static_cast<size_t>(size.area()))
     observation.class_map = input.detections->class_map.data();
   // Time that stands still or jumps back is no time at all; a long gap is as good as a second.
@@ -65,21 +77,33 @@ PartPoses FullFilter::Step(const FilterInput& input) {
   LocateCamera(observation);
   observation.has_table = camera_.started();
   observation.table = PlaneOf(camera_.X_TC());
+  if (steps_ % 15 == 0) area_.Add(observation, camera_.X_TC());
   BuildOwners(observation, dt);
   std::vector<int> order(tracks_.size());
   std::iota(order.begin(), order.end(), 0);
-  const Pose X_CT = camera_.X_TC().inverse();
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    const double za = (X_CT * tracks_[a].X_TP.translation()).z(), zb = (X_CT * tracks_[b].X_TP.translation()).z();
-    return za != zb ? za < zb : a < b;
+  // The best seen first: they carry those that are linked to them.
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return tracks_[a].visible_fraction * tracks_[a].confidence > tracks_[b].visible_fraction * tracks_[b].confidence;
   });
+  UpdateLinks(input);
+  updated_.assign(tracks_.size(), false);
   for (const int part : order) {
-    if (tracks_[part].alive())
-      UpdateTrack(part, observation, dt);
-    else if (tracks_[part].status == PartStatus::kLost)
-      Coast(PartStatus::kLost, dt, options_.track, tracks_[part]);
+    Track& track = tracks_[part];
+    if (track.status == PartStatus::kLost) {
+      Matrix6 covariance;
+      if (const auto carried = CarriedBy(part, covariance)) {
+        // Its partner knows where it must be: believed there until the image says otherwise.
+        track.X_TP = track.X_TP_free = *carried;
+        track.covariance = track.covariance_free = covariance;
+        track.status = PartStatus::kOccluded;
+      } else {
+        Coast(PartStatus::kLost, dt, options_.track, track);
+      }
+    }
+    if (track.alive()) UpdateTrack(part, observation, dt);
   }
   Recover(observation);
+  foreign_.Find(observation, owners_, camera_.X_TC(), area_, dt);
   suggested_.clear();
   ++steps_;
   return Output(input);
@@ -145,16 +169,24 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   const Pose X_CT = camera_.X_TC().inverse();
   const Pose predicted = PredictPose(track, dt);
   const uint8_t bit = bit_of_part_[part];
+  Matrix6 carried_covariance;
+  const std::optional<Pose> carried = CarriedBy(part, carried_covariance);
   PoseCandidate best =
       Polish(shape.model, observation, owners_, part, bit, X_CT * predicted, options_.refinement, scratch_);
+  const Vector3 expected = X_CT * (carried ? *carried : predicted).translation();
   const auto consider = [&](const Pose& X_CP) {
     const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit, X_CP, options_.refinement, scratch_);
-    if (c.score.log_likelihood > best.score.log_likelihood) best = c;
+    // Between likely poses the near one wins: a far one may be the empty place of an equal part.
+    const auto penalty = [&](const Pose& X) {
+      return options_.jump_penalty * std::min(4.0, (X.translation() - expected).squaredNorm() / (0.03 * 0.03));
+    };
+    if (c.score.log_likelihood - penalty(c.X_CP) > best.score.log_likelihood - penalty(best.X_CP)) best = c;
   };
   const Pose particle = BestParticle(part, observation, predicted, track.X_TP, dt);
   const Vector6 away = Difference(best.X_CP, particle);
   if (best.score.agreement() < 0.9 || away.head<3>().norm() > 0.015) consider(particle);
   if (track.moving) consider(X_CT * track.X_TP);
+  if (carried) consider(X_CT * *carried);
   // One of the poses that look almost the same, in turn: a slip is noticed within a few frames.
   if (!shape.model.near_symmetries.empty() && best.score.open() > 30) {
     Pose X = best.X_CP;
@@ -177,7 +209,81 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
     Coast(bad >= options_.track.bad_frames ? PartStatus::kLost : track.status, dt, options_.track, track);
     track.bad = bad;
   }
+  if (carried) {
+    if (track.missing()) {
+      // Not seen: it is where its partner takes it.
+      track.X_TP = *carried;
+      track.covariance = carried_covariance;
+      track.X_TP_free = track.X_TP;
+      track.covariance_free = track.covariance;
+      if (track.status == PartStatus::kLost) track.status = PartStatus::kOccluded;
+    } else {
+      Constrain(*carried, carried_covariance, track);
+    }
+  }
+  updated_[part] = !track.missing() || carried;
   Place(part, observation);
+}
+
+void FullFilter::UpdateLinks(const FilterInput& input) {
+  std::vector<Link> links;
+  if (input.belief && input.utime - input.belief->utime < 500000) {
+    for (const ConnectionProbability& c : input.belief->connections) {
+      const int n = static_cast<int>(tracks_.size());
+      if (c.probability < options_.link_probability || c.part_a < 0 || c.part_b < 0 || c.part_a >= n || c.part_b >= n)
+        continue;
+      Link link{c.part_a, c.part_b, false, Pose::Identity()};
+      for (const Link& old : links_) {
+        if (old.part_a == link.part_a && old.part_b == link.part_b) link = old;
+      }
+      if (!tracks_[link.part_a].missing() && !tracks_[link.part_b].missing()) {
+        const Pose seen = tracks_[link.part_a].X_TP_free.inverse() * tracks_[link.part_b].X_TP_free;
+        double nearest = 0.025;  // m, a radian counting as 5 cm
+        for (const PairFinder::Candidate& joint : pairs_.CandidatesOf(link.part_a, link.part_b)) {
+          const Vector6 e = Difference(joint.X_AB, seen);
+          const double distance = e.head<3>().norm() + 0.05 * e.tail<3>().norm();
+          if (distance >= nearest) continue;
+          nearest = distance;
+          link.X_AB = joint.X_AB;
+          link.known = true;
+        }
+      }
+      links.push_back(link);
+    }
+  }
+  links_ = std::move(links);
+}
+
+std::optional<Pose> FullFilter::CarriedBy(int part, Matrix6& covariance) const {
+  std::optional<Pose> best;
+  double best_spread = 1e9;
+  Matrix6 play = Matrix6::Zero();
+  play.diagonal().head<3>().setConstant(options_.link_position * options_.link_position);
+  play.diagonal().tail<3>().setConstant(options_.link_rotation * options_.link_rotation);
+  for (const Link& link : links_) {
+    if (!link.known || (link.part_a != part && link.part_b != part)) continue;
+    const int partner = link.part_a == part ? link.part_b : link.part_a;
+    if (!updated_[partner]) continue;
+    const Pose X_PQ = link.part_a == part ? link.X_AB.inverse() : link.X_AB;  // this part in its partner's frame
+    const Track& p = tracks_[partner];
+    const Matrix6 spread = ComposeCovariance(p.X_TP, p.covariance, X_PQ, play);
+    if (spread.topLeftCorner<3, 3>().trace() >= best_spread) continue;
+    best_spread = spread.topLeftCorner<3, 3>().trace();
+    best = p.X_TP * X_PQ;
+    covariance = spread;
+  }
+  return best;
+}
+
+bool FullFilter::Plausible(int part, const PoseCandidate& found) const {
+  // A part that lay still when something moved in front of it is most likely still there: to be found elsewhere it must
+  // be seen well.
+  const Track& track = tracks_[part];
+  const bool at_rest =
+      (track.status == PartStatus::kOccluded || track.status == PartStatus::kOutOfView) && !track.carried;
+  if (!at_rest) return true;
+  return found.score.agreement() > 0.8 && found.outline_support() > 0.85 &&
+         found.score.open() > 0.5 * found.full_samples;
 }
 
 void FullFilter::Recover(const Observation& observation) {
@@ -186,7 +292,7 @@ void FullFilter::Recover(const Observation& observation) {
   if (!any) {
     if (steps_ % 5 == 0) {
       const auto& blobs =
-          blob_finder_.FindUnexplained(observation, owners_, class_of_part_, task_.NumColourClasses(), camera_.X_TC());
+          blob_finder_.FindUnexplained(observation, owners_, class_of_part_, num_classes_, camera_.X_TC(), area_);
       distractors_.Remember(blobs, camera_.X_TC());
     }
     return;
@@ -194,7 +300,7 @@ void FullFilter::Recover(const Observation& observation) {
   int left = steps_ < 3 ? 1000 : options_.searches;
   for (size_t round = 0; round < tracks_.size() && left > 0; ++round) {
     const auto& blobs =
-        blob_finder_.FindUnexplained(observation, owners_, class_of_part_, task_.NumColourClasses(), camera_.X_TC());
+        blob_finder_.FindUnexplained(observation, owners_, class_of_part_, num_classes_, camera_.X_TC(), area_);
     int best_part = -1;
     PoseCandidate best;
     double best_gain = options_.relocation_gain;
@@ -210,7 +316,7 @@ void FullFilter::Recover(const Observation& observation) {
         const auto found =
             SearchPose(ShapeOf(static_cast<int>(k)).model, ShapeOf(static_cast<int>(k)).search_points, observation,
                        owners_, static_cast<int>(k), bit_of_part_[k], blob, camera_.X_TC(), options_.search, scratch_);
-        if (!found || found->score.log_likelihood <= best_gain) continue;
+        if (!found || found->score.log_likelihood <= best_gain || !Plausible(static_cast<int>(k), *found)) continue;
         best_gain = found->score.log_likelihood;
         best = *found;
         best_part = static_cast<int>(k);
@@ -229,12 +335,17 @@ void FullFilter::Recover(const Observation& observation) {
         chosen = static_cast<int>(k);
       }
     }
+    if (tracks_[chosen].status != PartStatus::kAbsent) {
+      // Of the poses that look the same, the one nearest to what was known: links to partners stay valid.
+      best.X_CP = NearestEquivalent(ShapeOf(chosen).model.symmetries, best.X_CP,
+                                    camera_.X_TC().inverse() * tracks_[chosen].X_TP);
+    }
     Restart(best, camera_.X_TC(), tracks_[chosen]);
     Place(chosen, observation);
   }
 }
 
-PartPoses FullFilter::Output(const FilterInput& input) const {
+PartPoses FullFilter::Output(const FilterInput& input) {
   PartPoses out;
   out.utime = input.utime;
   out.received_utime = input.received_utime;
@@ -244,6 +355,8 @@ PartPoses FullFilter::Output(const FilterInput& input) const {
   out.table_found = camera_.table_seen();
   out.table_residual = camera_.table().residual;
   for (const Track& track : tracks_) out.parts.push_back(Publish(track, options_.track));
+  out.pairs = pairs_.Find(input.utime, tracks_);
+  out.foreign = foreign_.blobs();
   return out;
 }
 

@@ -4,18 +4,26 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <random>
 
 #include "services/pose_filter/camera_motion.h"
+#include "services/pose_filter/foreign_blobs.h"
+#include "services/pose_filter/pair_evidence.h"
 #include "services/pose_filter/part_track.h"
 #include "services/pose_filter/pose_filter.h"
 
 namespace coach {
 
 struct FullFilterOptions {
-  int particles = 200;       ///< a part
-  int particle_points = 60;  ///< surface points a particle is scored on (about half of them face the camera)
-  int searches = 3;          ///< searches from nothing a frame, at most (all of them in the first frames)
+  int particles = 200;            ///< a part
+  int particle_points = 60;       ///< surface points a particle is scored on (about half of them face the camera)
+  int searches = 3;               ///< searches from nothing a frame, at most (all of them in the first frames)
+  double link_probability = 0.6;  ///< from here on a believed connection links two parts
+  double link_position = 0.0015;  ///< m, play of a link
+  double link_rotation = 0.015;   ///< rad
+  double jump_penalty =
+      300;  ///< nats for a pose 3 cm from where the part was expected; grows with the square, at most four times
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
   TrackOptions track;
@@ -23,6 +31,8 @@ struct FullFilterOptions {
   RefinementOptions refinement;
   CameraMotionOptions camera;
   TableOptions table;
+  ForeignOptions foreign;
+  PairOptions pairs;
 };
 
 class FullFilter final : public PoseFilter {
@@ -38,23 +48,33 @@ class FullFilter final : public PoseFilter {
     PartModel model;
     PointSet search_points, particle_points;
   };
+  /// A believed connection as a rigid link.
+  struct Link {
+    int part_a = 0, part_b = 0;
+    bool known = false;  ///< its relative pose (which of the symmetric ones) was seen
+    Pose X_AB = Pose::Identity();
+  };
   const Shape& ShapeOf(int part) const {
     return *shapes_[static_cast<size_t>(task_.parts[static_cast<size_t>(part)].type)];
   }
 
   void LocateCamera(const Observation& observation);
   void BuildOwners(const Observation& observation, double dt);
+  void UpdateLinks(const FilterInput& input);
+  std::optional<Pose> CarriedBy(int part, Matrix6& covariance) const;
   void UpdateTrack(int part, const Observation& observation, double dt);
   Pose BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest, double dt);
+  bool Plausible(int part, const PoseCandidate& found) const;
   void Recover(const Observation& observation);
   void Place(int part, const Observation& observation);
-  PartPoses Output(const FilterInput& input) const;
+  PartPoses Output(const FilterInput& input);
 
   Task task_;
   FullFilterOptions options_;
   uint64_t seed_;
   ParallelFor parallel_for_;
   std::vector<std::unique_ptr<Shape>> shapes_;  // one a type
+  int num_classes_ = 0;
   std::vector<int> class_of_part_;
   std::vector<uint8_t> bit_of_part_;
 
@@ -67,8 +87,13 @@ class FullFilter final : public PoseFilter {
   std::vector<Track> tracks_;
   std::vector<DepthTile> tiles_;  // of each part, as added to owners_
   std::vector<Pose> suggested_;
+  std::vector<Link> links_;
+  std::vector<bool> updated_;  // parts whose pose is that of this frame
   BlobFinder blob_finder_;
   Distractors distractors_;
+  TableArea area_;
+  ForeignFinder foreign_;
+  PairFinder pairs_;
   RefinementScratch scratch_;
 };
 

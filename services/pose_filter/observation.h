@@ -28,7 +28,8 @@ struct Observation {
   double metres_per_unit = 0.001;
   const uint8_t* class_map = nullptr;  ///< bit c: the colour is in class c; null: no colour in this frame
 
-  Plane table;  ///< in this frame
+  const uint8_t* bgr = nullptr;  ///< 3 bytes a pixel, row by row; null: no colour image
+  Plane table;                   ///< in this frame
   bool has_table = false;
 
   /// Whether a reading lies on the table: the table hides nothing, so a part predicted behind it is impossible.
@@ -42,6 +43,11 @@ struct Observation {
   /// Depth at a pixel inside the image, m; 0: no reading.
   float Depth(int x, int y) const {
     return depth ? static_cast<float>(depth[static_cast<size_t>(y) * camera.width + x] * metres_per_unit) : 0.0f;
+  }
+  /// Brightness at a pixel inside the image, 0..255; only with a colour image.
+  float Grey(int x, int y) const {
+    const uint8_t* p = bgr + 3 * (static_cast<size_t>(y) * camera.width + x);
+    return 0.25f * static_cast<float>(p[0] + 2 * p[1] + p[2]);
   }
   uint8_t Classes(int x, int y) const { return class_map ? class_map[static_cast<size_t>(y) * camera.width + x] : 0; }
   bool Inside(int x, int y) const { return x >= 0 && y >= 0 && x < camera.width && y < camera.height; }

@@ -19,16 +19,23 @@ double VisibleFraction(const PoseCandidate& c) {
   return c.full_samples > 0 ? std::clamp((c.score.inlier + c.score.no_reading) / c.full_samples, 0.0, 1.0) : 0.0;
 }
 
+void Describe(const PoseCandidate& candidate, Track& track) {
+  track.visible_fraction = VisibleFraction(candidate);
+  track.confidence = Confidence(candidate.score);
+  track.pixels = candidate.score.inlier * OwnerMap::kStep * OwnerMap::kStep;
+}
+
+/// What dt adds to the uncertainty of a part that is seen.
+Matrix6 Growth(const Track& track, double dt, const TrackOptions& options) {
+  if (track.moving) return Diagonal(options.moving_position * dt, options.moving_rotation * dt);
+  return Diagonal(options.still_position * std::sqrt(dt), options.still_rotation * std::sqrt(dt));
+}
+
 }  // namespace
 
 Pose PredictPose(const Track& track, double dt) {
   if (!track.moving || track.status != PartStatus::kTracked) return track.X_TP;
   return Perturb(track.X_TP, track.velocity * dt);
-}
-
-Matrix6 PredictCovariance(const Track& track, double dt, const TrackOptions& options) {
-  if (track.moving) return track.covariance + Diagonal(options.moving_position * dt, options.moving_rotation * dt);
-  return track.covariance + Diagonal(options.still_position * std::sqrt(dt), options.still_rotation * std::sqrt(dt));
 }
 
 void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const TrackOptions& options, Track& track) {
@@ -42,40 +49,48 @@ void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const Tra
   const bool moves = shift.dot(spread.ldlt().solve(shift)) > options.moving_threshold;
   track.moving_for = moves ? 0 : track.moving_for + dt;
   track.moving = moves || track.moving_for < 0.25;
-  const Pose predicted = PredictPose(track, dt);
-  const Matrix6 prior = PredictCovariance(track, dt, options);
+  const Pose predicted = track.moving ? Perturb(track.X_TP_free, track.velocity * dt) : track.X_TP_free;
+  const Matrix6 prior = track.covariance_free + Growth(track, dt, options);
   const Vector6 innovation = Difference(predicted, measured);
   const Matrix6 gain = prior * (prior + noise).inverse();
-  track.X_TP = Perturb(predicted, gain * innovation);
-  track.covariance = (Matrix6::Identity() - gain) * prior;
-  track.covariance = (0.5 * (track.covariance + track.covariance.transpose())).eval();
-  if (track.hidden_for > 0) {
+  track.X_TP_free = Perturb(predicted, gain * innovation);
+  track.covariance_free = (Matrix6::Identity() - gain) * prior;
+  track.covariance_free = (0.5 * (track.covariance_free + track.covariance_free.transpose())).eval();
+  track.X_TP = track.X_TP_free;
+  track.covariance = track.covariance_free;
+  if (track.hidden_for > 0 || !track.moving) {
     track.velocity.setZero();
   } else if (dt > 0) {
     track.velocity = 0.4 * track.velocity + 0.6 * Difference(before, track.X_TP) / dt;
-    if (!track.moving) track.velocity.setZero();
   }
   track.status = PartStatus::kTracked;
   track.hidden_for = 0;
   track.carried = false;
   track.bad = 0;
-  track.visible_fraction = VisibleFraction(candidate);
-  track.confidence = Confidence(candidate.score);
-  track.measured_information = candidate.refinement.information;
-  track.X_CP_measured = candidate.X_CP;
+  Describe(candidate, track);
+}
+
+bool Constrain(const Pose& X_TP, const Matrix6& covariance, Track& track) {
+  const Vector6 apart = Difference(track.X_TP, X_TP);
+  const Matrix6 sum = track.covariance + covariance;
+  const Eigen::LDLT<Matrix6> solver(sum);
+  if (apart.dot(solver.solve(apart)) > 30) return false;
+  const Matrix6 gain = track.covariance * sum.inverse();
+  track.X_TP = Perturb(track.X_TP, gain * apart);
+  track.covariance = (Matrix6::Identity() - gain) * track.covariance;
+  track.covariance = (0.5 * (track.covariance + track.covariance.transpose())).eval();
+  return true;
 }
 
 void Restart(const PoseCandidate& candidate, const Pose& X_TC, Track& track) {
   track = Track();
   track.status = PartStatus::kTracked;
-  track.X_TP = X_TC * candidate.X_CP;
+  track.X_TP = track.X_TP_free = X_TC * candidate.X_CP;
   track.covariance =
       (RotateCovariance(X_TC.linear(), candidate.refinement.information) + Matrix6::Identity() * 1e-3).inverse();
+  track.covariance_free = track.covariance;
   track.moving = true;
-  track.visible_fraction = VisibleFraction(candidate);
-  track.confidence = Confidence(candidate.score);
-  track.measured_information = candidate.refinement.information;
-  track.X_CP_measured = candidate.X_CP;
+  Describe(candidate, track);
 }
 
 void Coast(PartStatus status, double dt, const TrackOptions& options, Track& track) {
@@ -97,7 +112,8 @@ void Coast(PartStatus status, double dt, const TrackOptions& options, Track& tra
   track.status = status;
   track.visible_fraction = 0;
   track.confidence = status == PartStatus::kLost ? 0 : track.confidence * std::exp(-dt);
-  track.measured_information.setZero();
+  track.X_TP_free = track.X_TP;
+  track.covariance_free = track.covariance;
 }
 
 PartEstimate Publish(const Track& track, const TrackOptions& options) {

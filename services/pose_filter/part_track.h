@@ -24,31 +24,33 @@ struct TrackOptions {
 
 struct Track {
   PartStatus status = PartStatus::kAbsent;
-  Pose X_TP = Pose::Identity();
+  Pose X_TP = Pose::Identity();       ///< what is published: with the constraints of believed connections
+  Pose X_TP_free = Pose::Identity();  ///< by the images alone, since the part was last found
+  Matrix6 covariance_free = Matrix6::Identity() * 0.25;
   Vector6 velocity = Vector6::Zero();               ///< table frame
   Matrix6 covariance = Matrix6::Identity() * 0.25;  ///< of X_TP, without the published floor
   double visible_fraction = 0;
   double confidence = 0;
+  int pixels = 0;  ///< px of the last fit
   bool moving = false;
   double moving_for = 0;  ///< s since it was last seen to move; 0: moves now
   double hidden_for = 0;  ///< s without an update
   bool carried = false;   ///< it moved, or a hand touched it, when it was hidden
   int bad = 0;            ///< frames in a row in which the image contradicts the pose
-  Matrix6 measured_information =
-      Matrix6::Zero();                    ///< of the last free fit, camera frame; zero if there was none in this frame
-  Pose X_CP_measured = Pose::Identity();  ///< the free fit itself
-
   /// Not seen in this frame where it is believed to be.
   bool missing() const { return status != PartStatus::kTracked || bad > 0; }
   bool alive() const { return status != PartStatus::kAbsent && status != PartStatus::kLost; }
 };
 
-/// Where the part is expected after dt, and how sure.
+/// Where the part is expected after dt.
 Pose PredictPose(const Track& track, double dt);
-Matrix6 PredictCovariance(const Track& track, double dt, const TrackOptions& options);
 
 /// Takes a free fit into the track: fuses it with the prediction, updates velocity, covariance and whether it moves.
 void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const TrackOptions& options, Track& track);
+
+/// A rigid partner says where the part is: combines it with the free pose unless the image clearly contradicts it.
+/// @returns whether it was used
+bool Constrain(const Pose& X_TP, const Matrix6& covariance, Track& track);
 
 /// The part at a new place: what was believed before is dropped.
 void Restart(const PoseCandidate& candidate, const Pose& X_TC, Track& track);

@@ -40,7 +40,7 @@ float ScorePoints(const PointSet& points, const Observation& o, const OwnerMap& 
               y = static_cast<int>(std::floor(fy * p.y() * w + cy));
     if (!o.Inside(x, y)) continue;
     const float other = owners.OtherDepth(x, y, part);
-    if (other > 0 && other < p.z() - 0.004f) continue;
+    if (other > 0 && other < p.z() + 0.006f) continue;
     const float cosine = facing * w;
     const float z = o.Depth(x, y);
     sum += cosine * JudgePixel(p.z(), z, sigma, o.class_map != nullptr, o.Classes(x, y) & class_bit, [&] {

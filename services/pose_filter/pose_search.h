@@ -16,6 +16,8 @@ struct PoseSearchOptions {
   int refined = 10;              ///< best candidates that are refined
   int polished = 3;              ///< best of those that are refined again, with their near symmetries
   double least_agreement = 0.6;  ///< Score::agreement of an accepted pose
+  double least_outline = 0.72;   ///< PoseCandidate::outline_support of an accepted pose
+  double largest_chi2 = 3.0;     ///< RefinementResult::depth_chi2 of an accepted pose
   double least_visible = 0.2;    ///< share of the silhouette that must be open
 };
 
@@ -24,6 +26,13 @@ struct PoseCandidate {
   Score score;
   RefinementResult refinement;
   double full_samples = 0;  ///< samples that the silhouette would have if nothing hid or cut it
+
+  /// Share of the outline, where it can be judged, at which the image has the step that the pose predicts; 1 without
+  /// colour.
+  double outline_support() const {
+    return refinement.contour_judged >= 8 ? static_cast<double>(refinement.contour_used) / refinement.contour_judged
+                                          : 1.0;
+  }
 };
 
 /// Refines a pose and scores it at the end: what every hypothesis goes through before it may win.

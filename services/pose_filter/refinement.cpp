@@ -13,6 +13,7 @@ struct Normal {
   Matrix6 H = Matrix6::Zero();
   Vector6 g = Vector6::Zero();
   int used = 0;
+  int judged = 0;
   double weight = 0;
   double chi2 = 0;
   Vector6 h_bias = Vector6::Zero();  // coupling with the outline's bias, where there is one
@@ -152,6 +153,7 @@ void AddContour(const Observation& observation, const OwnerMap& owners, int part
       unknown += g[s + L] == 0;
     }
     if (unknown > L / 2) continue;
+    ++normal.judged;
     // S(c): the step lies between samples c - 1 and c. Start with everything outside.
     double S[2 * kLongest + 2], best = -1e9;
     S[0] = 0;
@@ -254,6 +256,7 @@ RefinementResult Refine(const PartModel& model, const Observation& observation, 
     }
     result.depth_used = depth.used;
     result.contour_used = contour.used;
+    result.contour_judged = contour.judged;
     result.depth_chi2 = depth.weight > 0 ? depth.chi2 / depth.weight : 0;
     depth.Temper(options.depth_witnesses);
     contour.Temper(options.contour_witnesses);

@@ -35,6 +35,7 @@ struct RefinementResult {
   Matrix6 information = Matrix6::Zero();  ///< of Perturb(X_CP, .), camera frame, tempered; prior not included
   int depth_used = 0;                     ///< readings in the last iteration
   int contour_used = 0;                   ///< outline points in the last iteration
+  int contour_judged = 0;                 ///< outline points where nothing hid the step, if there was one
   double outline_bias = 0;                ///< px, as estimated
   double depth_chi2 = 0;                  ///< mean squared residual over sigma, last iteration
 };

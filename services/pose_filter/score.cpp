@@ -17,7 +17,7 @@ Score ScoreTile(const DepthTile& tile, const Observation& observation, const Own
       const int x = tile.x0 + i * tile.step;
       ++score.covered;
       const float other = owners.OtherDepth(x, y, part);
-      if (other > 0 && other < d - 0.004f) {
+      if (other > 0 && other < d + 0.006f) {  // two surfaces are never in one place
         ++score.hidden;
         continue;
       }

@@ -6,6 +6,7 @@
 #include "common/assembly/task_file.h"
 #include "common/imaging/results_csv.h"
 #include "common/imaging/scene_folder.h"
+#include "services/assembly_reasoner/assembly_reasoner.h"
 #include "services/detector/hsv_detector.h"
 #include "services/pose_filter/full_filter.h"
 
@@ -13,7 +14,7 @@ namespace coach {
 namespace {
 
 struct Arguments {
-  std::string scene, task, poses, states, timings;
+  std::string scene, task, poses, states, events, timings;
   double fps = 30;
   uint64_t seed = 1;
   int first = 0, last = -1;
@@ -33,6 +34,10 @@ void Run(const Arguments& a) {
   if (!a.states.empty()) states = std::make_unique<StatesCsv>(a.states, task);
   std::unique_ptr<TimingsCsv> timings;
   if (!a.timings.empty()) timings = std::make_unique<TimingsCsv>(a.timings);
+  std::unique_ptr<EventsCsv> events;
+  if (!a.events.empty()) events = std::make_unique<EventsCsv>(a.events, task, reader.utime(0));
+  AssemblyReasoner reasoner(task);
+  ConnectionBelief belief;
   std::vector<double> filter_ms;
   for (int i = 0; i < reader.size(); ++i) {
     const Frame frame = reader.Read(i);
@@ -47,11 +52,27 @@ void Run(const Arguments& a) {
     input.metres_per_unit = frame.metres_per_unit;
     input.colour = frame.colour;
     input.detections = &detections;
+    input.belief = &belief;
     const auto t1 = std::chrono::steady_clock::now();
     const PartPoses out = filter.Step(input);
     const double track = Seconds(t1);
     filter_ms.push_back(track * 1e3);
+    ReasonerOutput reasoned = reasoner.Step(out);
+    belief = std::move(reasoned.belief);
     poses.Write(reader.im_id(i), out);
+    if (events) {
+      for (const ConnectionEvent& e : reasoned.events) {
+        GuidanceEvent g;
+        g.utime = e.decided;
+        g.since = e.since;
+        g.kind = e.type;
+        g.subject = e.name;
+        g.part_a = e.part_a;
+        g.part_b = e.part_b;
+        g.probability = e.probability;
+        events->Write(g);
+      }
+    }
     if (states) states->Write(reader.im_id(i), out);
     if (timings) {
       timings->Write(reader.im_id(i), "detector", detect);
@@ -73,6 +94,7 @@ int main(int argc, char** argv) {
   app.add_option("--task", a.task, "task file")->required();
   app.add_option("--poses", a.poses, "poses csv to write")->required();
   app.add_option("--states", a.states, "states csv to write");
+  app.add_option("--events", a.events, "events csv to write");
   app.add_option("--timings", a.timings, "timings csv to write");
   app.add_option("--fps", a.fps, "frames a second of the recording");
   app.add_option("--seed", a.seed, "seed of every random choice");
