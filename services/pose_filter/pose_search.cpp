@@ -48,21 +48,6 @@ std::vector<Vector3> Anchors(const Blob& blob, const Observation& o, double expe
   return out;
 }
 
-/// Share of the blob's cells that lie within the part's silhouette or 4 px beside it.
-double BlobCoverage(const PartModel& model, const Observation& observation, const Blob& blob, const Pose& X_CP,
-                    RefinementScratch& scratch) {
-  RenderTile(model, observation.camera, X_CP, OwnerMap::kStep, 8, scratch.tile);
-  int in = 0;
-  for (const auto& p : blob.pixels) {
-    bool covered = false;
-    for (const int dx : {0, -4, 4}) {
-      for (const int dy : {0, -4, 4}) covered |= scratch.tile.AtPixel(p.x() + dx, p.y() + dy) > 0;
-    }
-    in += covered;
-  }
-  return static_cast<double>(in) / static_cast<double>(blob.pixels.size());
-}
-
 }  // namespace
 
 PoseCandidate Polish(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
