@@ -9,6 +9,7 @@
 #include "services/assembly_reasoner/assembly_reasoner.h"
 #include "services/detector/hsv_detector.h"
 #include "services/pose_filter/full_filter.h"
+#include "services/pose_filter/paper_filter.h"
 
 namespace coach {
 namespace {
@@ -17,6 +18,7 @@ struct Arguments {
   std::string scene, task, poses, states, events, timings;
   double fps = 30;
   uint64_t seed = 1;
+  bool paper = false;
   int first = 0, last = -1;
 };
 
@@ -24,11 +26,16 @@ double Seconds(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
 }
 
+std::unique_ptr<PoseFilter> MakeFilter(const Task& task, const Arguments& a) {
+  if (a.paper) return std::make_unique<PaperFilter>(task, PaperFilterOptions{}, a.seed);
+  return std::make_unique<FullFilter>(task, FullFilterOptions{}, a.seed, SerialFor());
+}
+
 void Run(const Arguments& a) {
   const Task task = LoadTask(a.task);
   const SceneReader reader(a.scene, {.fps = a.fps, .utime_origin = 0});
   HsvDetector detector(task);
-  FullFilter filter(task, {}, a.seed, SerialFor());
+  const std::unique_ptr<PoseFilter> filter = MakeFilter(task, a);
   PosesCsv poses(a.poses, task, reader.scene_id());
   std::unique_ptr<StatesCsv> states;
   if (!a.states.empty()) states = std::make_unique<StatesCsv>(a.states, task);
@@ -54,7 +61,7 @@ void Run(const Arguments& a) {
     input.detections = &detections;
     input.belief = &belief;
     const auto t1 = std::chrono::steady_clock::now();
-    const PartPoses out = filter.Step(input);
+    const PartPoses out = filter->Step(input);
     const double track = Seconds(t1);
     filter_ms.push_back(track * 1e3);
     ReasonerOutput reasoned = reasoner.Step(out);
@@ -98,6 +105,7 @@ int main(int argc, char** argv) {
   app.add_option("--timings", a.timings, "timings csv to write");
   app.add_option("--fps", a.fps, "frames a second of the recording");
   app.add_option("--seed", a.seed, "seed of every random choice");
+  app.add_flag("--paper", a.paper, "the paper's algorithm by its equations");
   CLI11_PARSE(app, argc, argv);
   try {
     coach::Run(a);
