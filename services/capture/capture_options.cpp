@@ -25,9 +25,9 @@ CameraModel ReadIntrinsics(const YamlNode& node) {
 
 /// "scene:recordings/a" -> "scene:/etc/coach/recordings/a"
 std::string WithAbsolutePath(const std::string& source, const std::filesystem::path& folder) {
-  for (const char* scheme : {"scene:", "oni:"}) {
-    if (source.rfind(scheme, 0) == 0)
-      return scheme + (folder / source.substr(std::string(scheme).size())).lexically_normal().string();
+  for (const std::string scheme : {"scene:", "oni:"}) {
+    if (source.rfind(scheme, 0) == 0 && source.size() > scheme.size())
+      return scheme + (folder / source.substr(scheme.size())).lexically_normal().string();
   }
   return source;
 }
