@@ -146,7 +146,7 @@ usePageLanguage(preferred);
 setUpControls();
 setUpTable();
 setUpNotes(() => page.state?.data_utime ?? 0, toast);
-addEventListener('hashchange', showPage);
+addEventListener('hashchange', () => { showPage(); scrollTo(0, 0); });
 showPage();
 listenToState(onState, (alive) => { byId('offline').hidden = alive; });
 listenToView(onView);

@@ -46,7 +46,7 @@ function draw(picture, view, task) {
   }
   context.drawImage(picture, 0, 0);
   if (!task?.parts || task.parts.length !== view.parts.length) return;
-  const unit = picture.width / 640;
+  const unit = Math.max(1, picture.width / (canvas.clientWidth || picture.width));  // lines and names keep their size on the screen
   const named = [];
   view.parts.forEach((part, index) => {
     if (!part.outlines.length) return;
