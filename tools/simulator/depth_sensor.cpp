@@ -17,6 +17,9 @@ CameraModel InfraredCamera(const DepthSensorOptions& options, const CameraModel&
   return camera;
 }
 
+/// Nearest whole number; ordinary sizes only.
+int Nearest(float x) { return static_cast<int>(x + 16384.5f) - 16384; }
+
 struct Surface {
   bool edge = false;
   float facing = 1;  // cosine between the ray and the normal
@@ -87,7 +90,7 @@ void DepthSensor::MarkShadows(const Hits& hits) {
     const size_t start = static_cast<size_t>(y * hits.width);
     const auto column = [&](int x, float disparity) {
       return static_cast<size_t>(
-          std::clamp(static_cast<int>(std::lround(static_cast<float>(x) + disparity)) + offset, 1, 3 * hits.width - 2));
+          std::clamp(Nearest(static_cast<float>(x) + disparity) + offset, 1, 3 * hits.width - 2));
     };
     for (int x = 0; x < hits.width; ++x) {
       if (hits.body[start + static_cast<size_t>(x)] < 0) continue;
@@ -116,8 +119,8 @@ void DepthSensor::StructuredLight(const Hits& hits, const std::vector<double>& h
     for (int x = 0; x < hits.width; ++x) {
       const size_t k = static_cast<size_t>(y * hits.width + x);
       // Edges are not where they are: the matching window belongs to one side or the other.
-      const int sx = std::clamp(x + static_cast<int>(std::lround(wobble * wobble_x_.At(x, y))), 0, hits.width - 1);
-      const int sy = std::clamp(y + static_cast<int>(std::lround(wobble * wobble_y_.At(x, y))), 0, hits.height - 1);
+      const int sx = std::clamp(x + Nearest(wobble * wobble_x_.At(x, y)), 0, hits.width - 1);
+      const int sy = std::clamp(y + Nearest(wobble * wobble_y_.At(x, y)), 0, hits.height - 1);
       const size_t s = static_cast<size_t>(sy * hits.width + sx);
       const int body = hits.body[s];
       if (body < 0 || shadow_[k] || shadow_[s]) continue;
@@ -130,7 +133,7 @@ void DepthSensor::StructuredLight(const Hits& hits, const std::vector<double>& h
       if (hole > 0 && 0.5 * (1 + std::erf(hole_field_.At(x, y) / std::sqrt(2.0))) < hole) continue;
       const float spread =
           noise * (0.75f * coarse_.At(x, y) + 0.65f * table_.At(white, k)) * (0.7f + 0.3f / look.facing);
-      const float disparity = std::round((fb / z + spread) / step) * step;
+      const float disparity = static_cast<float>(Nearest((fb / z + spread) / step)) * step;
       if (disparity <= 0) continue;
       const float measured = fb / disparity;
       if (measured > options_.nearest && measured < options_.farthest) measured_[k] = measured;
@@ -179,9 +182,9 @@ cv::Mat DepthSensor::Register() const {
       const float z = measured_[static_cast<size_t>(y * infrared_.width + x)];
       if (z <= 0) continue;
       const double u = ((x - infrared_.cx) / infrared_.fx + shift / z) * colour_.fx + colour_.cx;
-      const int column = static_cast<int>(std::lround(u));
+      const int column = Nearest(static_cast<float>(u));
       if (column < 0 || column >= colour_.width) continue;
-      const uint16_t mm = static_cast<uint16_t>(std::lround(1000 * z));
+      const uint16_t mm = static_cast<uint16_t>(1000 * z + 0.5f);
       if (out[column] == 0 || mm < out[column]) out[column] = mm;
     }
   }

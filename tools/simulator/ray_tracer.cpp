@@ -15,10 +15,9 @@ constexpr int kLanes = 8;
 constexpr float kSurfaceOffset = 1e-4f;  // m: a shadow ray starts this far off the surface it leaves
 
 struct Body {
-  RTCGeometry geometry = nullptr;
-  unsigned id = 0;
+  RTCGeometry geometry = nullptr;  // null for a fixture
   Pose X_WB = Pose::Identity();
-  bool limb = false;
+  bool moves = false;  // its normals are in its own frame
 };
 
 RTCIntersectContext Context(bool coherent) {
@@ -73,9 +72,47 @@ void Hits::Resize(int w, int h) {
 struct RayTracer::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  RTCScene fixtures = nullptr;  // one instance for all that never moves
+  unsigned fixtures_instance = RTC_INVALID_GEOMETRY_ID;
   std::vector<RTCScene> meshes;
   std::vector<Body> bodies;
+  std::vector<int> body_of_geometry, body_of_fixture;  // by Embree's ids
+
+  RTCGeometry NewMesh(const TriangleMesh& mesh, const Pose& X) const;
+  int Add(const Body& body);
+  int BodyOf(unsigned geometry, unsigned instance) const {
+    if (instance == RTC_INVALID_GEOMETRY_ID) return body_of_geometry[geometry];
+    return instance == fixtures_instance ? body_of_fixture[geometry] : body_of_geometry[instance];
+  }
 };
+
+RTCGeometry RayTracer::State::NewMesh(const TriangleMesh& mesh, const Pose& X) const {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), mesh.vertices.size()));
+  for (const Vector3& v : mesh.vertices) {
+    const Vector3 p = X * v;
+    for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(p[i]);
+  }
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                 3 * sizeof(unsigned), mesh.triangles.size()));
+  for (const auto& t : mesh.triangles) {
+    for (int i : t) *indices++ = static_cast<unsigned>(i);
+  }
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+int RayTracer::State::Add(const Body& body) {
+  bodies.push_back(body);
+  const int index = static_cast<int>(bodies.size()) - 1;
+  if (body.geometry) {
+    const unsigned id = rtcAttachGeometry(scene, body.geometry);
+    body_of_geometry.resize(std::max<size_t>(body_of_geometry.size(), id + 1), -1);
+    body_of_geometry[id] = index;
+  }
+  return index;
+}
 
 RayTracer::RayTracer() : state_(std::make_unique<State>()) {
   state_->device = rtcNewDevice("threads=1,set_affinity=0");
@@ -84,28 +121,22 @@ RayTracer::RayTracer() : state_(std::make_unique<State>()) {
   state_->scene = rtcNewScene(state_->device);
   rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_DYNAMIC);
   rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_LOW);
+  state_->fixtures = rtcNewScene(state_->device);
+  rtcSetSceneBuildQuality(state_->fixtures, RTC_BUILD_QUALITY_HIGH);
 }
 
 RayTracer::~RayTracer() {
-  for (Body& body : state_->bodies) rtcReleaseGeometry(body.geometry);
+  for (Body& body : state_->bodies) {
+    if (body.geometry) rtcReleaseGeometry(body.geometry);
+  }
   rtcReleaseScene(state_->scene);
+  rtcReleaseScene(state_->fixtures);
   for (RTCScene mesh : state_->meshes) rtcReleaseScene(mesh);
   rtcReleaseDevice(state_->device);
 }
 
 int RayTracer::AddMesh(const TriangleMesh& mesh) {
-  RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                               3 * sizeof(float), mesh.vertices.size()));
-  for (const Vector3& v : mesh.vertices) {
-    for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(v[i]);
-  }
-  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                 3 * sizeof(unsigned), mesh.triangles.size()));
-  for (const auto& t : mesh.triangles) {
-    for (int i : t) *indices++ = static_cast<unsigned>(i);
-  }
-  rtcCommitGeometry(geometry);
+  RTCGeometry geometry = state_->NewMesh(mesh, Pose::Identity());
   RTCScene scene = rtcNewScene(state_->device);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
@@ -116,23 +147,29 @@ int RayTracer::AddMesh(const TriangleMesh& mesh) {
 
 int RayTracer::AddBody(int mesh) {
   Body body;
+  body.moves = true;
   body.geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(body.geometry, state_->meshes.at(static_cast<size_t>(mesh)));
-  body.id = rtcAttachGeometry(state_->scene, body.geometry);
-  state_->bodies.push_back(body);
-  const int index = num_bodies() - 1;
+  const int index = state_->Add(body);
   SetPose(index, Pose::Identity());
   return index;
 }
 
 int RayTracer::AddLimb() {
   Body body;
-  body.limb = true;
   body.geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-  body.id = rtcAttachGeometry(state_->scene, body.geometry);
-  state_->bodies.push_back(body);
-  const int index = num_bodies() - 1;
+  const int index = state_->Add(body);
   SetSegments(index, {});
+  return index;
+}
+
+int RayTracer::AddFixture(const TriangleMesh& mesh, const Pose& X_WB) {
+  RTCGeometry geometry = state_->NewMesh(mesh, X_WB);
+  const unsigned id = rtcAttachGeometry(state_->fixtures, geometry);
+  rtcReleaseGeometry(geometry);
+  const int index = state_->Add({});
+  state_->body_of_fixture.resize(id + 1, -1);
+  state_->body_of_fixture[id] = index;
   return index;
 }
 
@@ -170,7 +207,17 @@ void RayTracer::SetSegments(int limb, const std::vector<RoundSegment>& segments)
   rtcCommitGeometry(geometry);
 }
 
-void RayTracer::Commit() { rtcCommitScene(state_->scene); }
+void RayTracer::Commit() {
+  if (state_->fixtures_instance == RTC_INVALID_GEOMETRY_ID && !state_->body_of_fixture.empty()) {
+    rtcCommitScene(state_->fixtures);
+    RTCGeometry instance = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, state_->fixtures);
+    rtcCommitGeometry(instance);
+    state_->fixtures_instance = rtcAttachGeometry(state_->scene, instance);
+    rtcReleaseGeometry(instance);
+  }
+  rtcCommitScene(state_->scene);
+}
 
 void RayTracer::Trace(const CameraModel& camera, const Pose& X_WC, Hits* hits) const {
   hits->Resize(camera.width, camera.height);
@@ -207,13 +254,13 @@ void RayTracer::Trace(const CameraModel& camera, const Pose& X_WC, Hits* hits) c
           hits->z[k] = 0;
           continue;
         }
-        const size_t index = instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance;
+        const int index = state_->BodyOf(geometry, instance);
         Eigen::Vector3f n(packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]);
-        const Body& body = state_->bodies[index];
-        if (!body.limb) n = body.X_WB.linear().cast<float>() * n;
+        const Body& body = state_->bodies[static_cast<size_t>(index)];
+        if (body.moves) n = body.X_WB.linear().cast<float>() * n;
         n.normalize();
         if (n.dot(Eigen::Vector3f(packet.ray.dir_x[i], packet.ray.dir_y[i], packet.ray.dir_z[i])) > 0) n = -n;
-        hits->body[k] = static_cast<int>(index);
+        hits->body[k] = index;
         hits->z[k] = packet.ray.tfar[i];
         hits->normal_x[k] = n.x();
         hits->normal_y[k] = n.y();
@@ -229,11 +276,11 @@ RayTracer::RayHit RayTracer::Cast(const Vector3& origin, const Vector3& directio
   rtcIntersect1(state_->scene, &context, &ray);
   RayHit hit;
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
-  const bool instanced = ray.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-  hit.body = static_cast<int>(instanced ? ray.hit.instID[0] : ray.hit.geomID);
+  hit.body = state_->BodyOf(ray.hit.geomID, ray.hit.instID[0]);
   hit.distance = ray.ray.tfar;
   hit.normal = Vector3(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z).normalized();
-  if (instanced) hit.normal = state_->bodies[static_cast<size_t>(hit.body)].X_WB.linear() * hit.normal;
+  const Body& body = state_->bodies[static_cast<size_t>(hit.body)];
+  if (body.moves) hit.normal = body.X_WB.linear() * hit.normal;
   if (hit.normal.dot(direction) > 0) hit.normal = -hit.normal;
   return hit;
 }

@@ -37,6 +37,8 @@ class RayTracer {
   int AddMesh(const TriangleMesh& mesh);  ///< a shape that bodies share
   int AddBody(int mesh);                  ///< at the origin until SetPose
   int AddLimb();                          ///< empty until SetSegments
+  /// A body that never moves (faster). All must be added before the first Commit.
+  int AddFixture(const TriangleMesh& mesh, const Pose& X_WB);
   int num_bodies() const;
 
   void SetPose(int body, const Pose& X_WB);

@@ -97,8 +97,7 @@ Simulator::Simulator(Stage stage, uint64_t seed) : state_(std::make_unique<State
   }
   for (const Prop& prop : s.stage.props) s.AddThing(prop.mesh, prop.material);
   for (const Fixture& fixture : s.stage.room.fixtures) {
-    const int body = s.tracer.AddBody(s.tracer.AddMesh(fixture.mesh));
-    s.tracer.SetPose(body, fixture.X_W);
+    s.tracer.AddFixture(fixture.mesh, fixture.X_W);
     s.looks.push_back({fixture.material, fixture.X_W});
   }
   if (s.stage.child) {
