@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 namespace coach {
@@ -204,7 +205,9 @@ bool Child::Blocked(int part, const Pose& X_W, const std::vector<int>& things) c
                      [&](int t) { return t != part && solids_.Overlap(part, X_W, t, PoseOf(t)); });
 }
 
-Vector3 Child::Approach(int part, const Pose& X_W, const std::vector<int>& neighbours) const {
+Vector3 Child::Approach(int part, const Pose& X_W) const {
+  std::vector<int> things(group_.size());
+  std::iota(things.begin(), things.end(), 0);
   std::vector<Vector3> directions{Vector3::UnitZ()};
   for (int i = 0; i < 3; ++i) {
     const Vector3 axis = X_W.linear().col(i);
@@ -218,7 +221,7 @@ Vector3 Child::Approach(int part, const Pose& X_W, const std::vector<int>& neigh
     const Vector3& d = directions[k == 0 ? 0 : 1 + (first + k) % (directions.size() - 1)];
     bool free = true;
     for (const double way : {0.004, 0.01, 0.02, 0.03, 0.045, 0.06})
-      free = free && !Blocked(part, Shifted(X_W, way * d), neighbours);
+      free = free && !Blocked(part, Shifted(X_W, way * d), things);
     if (free) return d;
   }
   return Vector3::UnitZ();
@@ -231,8 +234,8 @@ double Child::Join(Side hand, const Joint& joint) {
     Wait(random_->Uniform(0, 0.3));
   }
   const Pose X_W = PoseOf(joint.base) * joint.X_base_part;
-  const Vector3 d = Approach(joint.part, X_W, GroupMembers(joint.base));
-  const Pose before = Shifted(X_W, 0.05 * d + Vector3(0, 0, d.z() > 0.9 ? 0.0 : 0.002));
+  const Vector3 d = Approach(joint.part, X_W);
+  const Pose before = Shifted(X_W, 0.05 * d);
   Carry(hand, before, 0.07);
   if (joint.near_miss > 0) {
     Carry(hand, Shifted(X_W, joint.near_miss * d), 0, style_.dock_time);
@@ -260,7 +263,7 @@ void Child::TakeOff(Side hand, int part, const std::string& connection, int from
   if (HeldBy(hand) != part) Reach(hand, part);
   std::vector<int> others = GroupMembers(part);
   std::erase(others, part);
-  const Vector3 d = Approach(part, PoseOf(part), others);
+  const Vector3 d = Approach(part, PoseOf(part));
   // The others stay where they are: they must not follow the part any more.
   for (int other : others) {
     const Pose X = PoseOf(other);

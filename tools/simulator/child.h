@@ -57,8 +57,8 @@ class Child {
   /// Pulls `part` off its group and lays it down at X_W.
   void TakeOff(Side hand, int part, const std::string& connection, int from, const Pose& X_W);
 
-  /// Free direction (world, unit) along which a part comes to X_W without passing through its future neighbours, or up.
-  Vector3 Approach(int part, const Pose& X_W, const std::vector<int>& neighbours) const;
+  /// Free direction (world, unit) along which a part comes to X_W without passing through another thing, or up.
+  Vector3 Approach(int part, const Pose& X_W) const;
   std::vector<int> GroupMembers(int thing) const;
   bool Blocked(int part, const Pose& X_W, const std::vector<int>& things) const;
 

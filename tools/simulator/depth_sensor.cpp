@@ -57,7 +57,7 @@ DepthSensor::DepthSensor(const DepthSensorOptions& options, const CameraModel& c
       row_(static_cast<size_t>(3 * colour.width)) {}
 
 Pose DepthSensor::X_CI() const {
-  const double shift = options_.kind == DepthSensorOptions::Kind::kPerfect ? 0 : options_.colour_baseline;
+  const double shift = options_.kind == DepthSensorOptions::Kind::kPerfect ? 0 : -options_.colour_baseline;
   return MakePose(Matrix3::Identity(), Vector3(shift, 0, 0));
 }
 
@@ -84,13 +84,13 @@ cv::Mat DepthSensor::Measure(const Hits& hits, const Matrix3& R_WI, const std::v
 // A pixel is in the projector's shadow if a nearer surface of its row takes the same projector column.
 void DepthSensor::MarkShadows(const Hits& hits) {
   const float fb = static_cast<float>(infrared_.fx * options_.projector_baseline);
-  const int offset = hits.width;
+  const int offset = 2 * hits.width;  // near surfaces have columns left of the image
   for (int y = 0; y < hits.height; ++y) {
     std::fill(row_.begin(), row_.end(), 0.0f);
     const size_t start = static_cast<size_t>(y * hits.width);
     const auto column = [&](int x, float disparity) {
       return static_cast<size_t>(
-          std::clamp(Nearest(static_cast<float>(x) + disparity) + offset, 1, 3 * hits.width - 2));
+          std::clamp(Nearest(static_cast<float>(x) - disparity) + offset, 1, 3 * hits.width - 2));
     };
     for (int x = 0; x < hits.width; ++x) {
       if (hits.body[start + static_cast<size_t>(x)] < 0) continue;

@@ -18,8 +18,8 @@ struct DepthSensorOptions {
   };
   Kind kind = Kind::kStructuredLight;
   double noise = 1;                     ///< factor on every random error
-  double projector_baseline = 0.075;    ///< m, projector left of the infrared camera
-  double colour_baseline = 0.025;       ///< m, infrared camera right of the colour camera
+  double projector_baseline = 0.075;    ///< m, projector right of the infrared camera
+  double colour_baseline = 0.025;       ///< m, infrared camera left of the colour camera
   double infrared_focal = 580;          ///< px at 640 px width
   double disparity_step = 1.0 / 8;      ///< px
   double disparity_noise = 0.11;        ///< px, standard deviation

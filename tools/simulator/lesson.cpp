@@ -10,12 +10,7 @@ constexpr double kReachX = 0.34;               // m: parts lie within this of th
 constexpr double kNearY = -0.2, kFarY = 0.17;  // m
 constexpr double kApart = 0.025;               // m between parts
 
-struct Circle {
-  Eigen::Vector2d centre;
-  double radius = 0;
-};
-
-Circle Footprint(const Solids& solids, int thing, const Pose& X_W) {
+Place Footprint(const Solids& solids, int thing, const Pose& X_W) {
   const MeshExtent& e = solids.extent(thing);
   const Vector3 c = X_W * e.centre;
   Vector3 half = 0.5 * (e.high - e.low);
@@ -34,7 +29,7 @@ struct BuildStep {
 };
 std::vector<BuildStep> BuildOrder(const Task& task, int* first_slot) {
   std::vector<int> order = task.steps;
-  for (int c = 0; c < static_cast<int>(task.connections.size()); ++c) {
+  for (const int c : OwnConnections(task)) {
     if (std::find(order.begin(), order.end(), c) == order.end()) order.push_back(c);
   }
   std::vector<BuildStep> steps;
@@ -101,9 +96,9 @@ class Lesson {
     joint.keep = true;
     placed_.push_back(step.slot);
     std::vector<int> closed;
-    for (size_t c = 0; c < task_.connections.size(); ++c) {
-      if (!made_[c] && Placed(task_.connections[c].slot_a) && Placed(task_.connections[c].slot_b))
-        closed.push_back(static_cast<int>(c));
+    for (const int c : OwnConnections(task_)) {
+      const Connection& connection = task_.connections[static_cast<size_t>(c)];
+      if (!made_[static_cast<size_t>(c)] && Placed(connection.slot_a) && Placed(connection.slot_b)) closed.push_back(c);
     }
     if (near_miss && !closed.empty()) {
       joint.near_miss = random_.Uniform(0.010, 0.016);
@@ -165,10 +160,10 @@ class Lesson {
       Y.linear() = Eigen::AngleAxisd(random_.Uniform(-1, 1), Vector3::UnitZ()).toRotationMatrix() * X.linear();
       if (std::abs(Y.translation().x()) > kReachX || Y.translation().y() < kNearY || Y.translation().y() > kFarY)
         continue;
-      const Circle c = Footprint(solids_, part, Y);
+      const Place c = Footprint(solids_, part, Y);
       bool free = true;
       for (int other : Others(part)) {
-        const Circle o = Footprint(solids_, other, child_.PoseOf(other));
+        const Place o = Footprint(solids_, other, child_.PoseOf(other));
         free = free && (c.centre - o.centre).norm() > c.radius + o.radius + 0.01;
       }
       if (free) return Y;
@@ -195,10 +190,10 @@ class Lesson {
       const Matrix3 R =
           Eigen::AngleAxisd(random_.Uniform(-1, 1), Vector3::UnitZ()).toRotationMatrix() * child_.PoseOf(part).linear();
       const Pose X = Resting(solids_, part, R, x, random_.Uniform(kNearY, kFarY));
-      const Circle c = Footprint(solids_, part, X);
+      const Place c = Footprint(solids_, part, X);
       bool free = true;
       for (int other : Others(part)) {
-        const Circle o = Footprint(solids_, other, child_.PoseOf(other));
+        const Place o = Footprint(solids_, other, child_.PoseOf(other));
         free = free && (c.centre - o.centre).norm() > c.radius + o.radius + 0.01;
       }
       if (free) return X;
@@ -218,6 +213,7 @@ class Lesson {
         const int base = Part(slot);
         for (int m = 0; m < static_cast<int>(task_.mistakes.size()); ++m) {
           const Mistake& mistake = task_.mistakes[static_cast<size_t>(m)];
+          if (placed_.size() < 2 && StartsVariant(m)) continue;
           const int tb = task_.parts[static_cast<size_t>(base)].type, tp = task_.parts[static_cast<size_t>(part)].type;
           if (mistake.type_a == tb && mistake.type_b == tp) options.push_back({m, base, part, mistake.X_AB});
           if (mistake.type_a == tp && mistake.type_b == tb) options.push_back({m, base, part, mistake.X_AB.inverse()});
@@ -243,6 +239,13 @@ class Lesson {
       return true;
     }
     return false;
+  }
+
+  /// The first joint of a variant is no mistake as long as no other joint is made.
+  bool StartsVariant(int mistake) const {
+    const std::string& own_class = classes_[task_.connections.size() + static_cast<size_t>(mistake)];
+    return std::find(classes_.begin(), classes_.begin() + static_cast<long>(task_.connections.size()), own_class) !=
+           classes_.begin() + static_cast<long>(task_.connections.size());
   }
 
   void TurnStructure() {
@@ -281,6 +284,7 @@ class Lesson {
   Random& random_;
   std::vector<int> placed_;  // slots
   std::vector<bool> made_;
+  const std::vector<std::string> classes_ = JointClasses(task_);  // of connections, then mistakes
 };
 
 }  // namespace
@@ -303,10 +307,11 @@ Pose StructurePlace(const Task& task, const Structure& structure, const Solids& 
 }
 
 std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Structure& structure,
-                               const Pose& X_W_structure, double any_face, Random& random) {
+                               const Pose& X_W_structure, const std::vector<Place>& avoid, double any_face,
+                               Random& random) {
   const int n = static_cast<int>(task.parts.size());
   std::vector<Matrix3> lying(static_cast<size_t>(n), Matrix3::Identity());
-  std::vector<Circle> taken;
+  std::vector<Place> taken = avoid;
   int first = 0;
   const bool builds = !BuildOrder(task, &first).empty();
   const int base = builds ? structure.part[static_cast<size_t>(first)] : -1;
@@ -334,8 +339,8 @@ std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Str
       R = Eigen::AngleAxisd(random.Uniform(-M_PI, M_PI), Vector3::UnitZ()).toRotationMatrix() * R;
       const Pose X = Resting(solids, part, R, reach * random.Uniform(-kReachX, kReachX),
                              random.Uniform(reach * kNearY, reach * kFarY));
-      const Circle c = Footprint(solids, part, X);
-      const bool free = std::none_of(taken.begin(), taken.end(), [&](const Circle& t) {
+      const Place c = Footprint(solids, part, X);
+      const bool free = std::none_of(taken.begin(), taken.end(), [&](const Place& t) {
         return (c.centre - t.centre).norm() < c.radius + t.radius + apart;
       });
       if (!free && attempt < 3000) continue;

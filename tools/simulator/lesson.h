@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/simulator/child.h"
+#include "tools/simulator/room.h"
 #include "tools/simulator/structure.h"
 
 namespace coach {
@@ -17,10 +18,11 @@ struct LessonPlan {
 /// Where the finished structure will lie: pose of the first slot in the world.
 Pose StructurePlace(const Task& task, const Structure& structure, const Solids& solids, Random& random);
 
-/// Poses of all parts apart from each other on the table and outside the structure's place. `any_face`: chance that a
-/// part lies on another face than in the structure.
+/// Poses of all parts apart from each other on the table outside the structure's place and of the places to avoid.
+/// `any_face`: chance that a part lies on another face than in the structure.
 std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Structure& structure,
-                               const Pose& X_W_structure, double any_face, Random& random);
+                               const Pose& X_W_structure, const std::vector<Place>& avoid, double any_face,
+                               Random& random);
 
 /// Builds the structure from its first joint on.
 void PlayLesson(const Task& task, const Structure& structure, const Solids& solids, const LessonPlan& plan,

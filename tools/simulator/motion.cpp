@@ -30,10 +30,11 @@ Pose ThingTracks::At(int thing, double time) const {
   const ThingSegment& s = track[static_cast<size_t>(index)];
   if (s.carrier >= 0) return At(s.carrier, time) * s.X_carrier_thing;
   const double linear = s.end > s.start ? std::clamp((time - s.start) / (s.end - s.start), 0.0, 1.0) : 1.0;
-  const double progress = MinimumJerk(linear);
+  // A lifted thing goes up first, across and then down, each movement running into the next.
+  const double progress = s.lift > 0 ? MinimumJerk((linear - 0.2) / 0.6) : MinimumJerk(linear);
   const Vector3 turn = LogRotation(s.to.linear() * s.from.linear().transpose());
   Vector3 p = s.from.translation() + progress * (s.to.translation() - s.from.translation());
-  p.z() += s.lift * std::pow(std::sin(M_PI * progress), 2);
+  p.z() += s.lift * (MinimumJerk(linear / 0.35) - MinimumJerk((linear - 0.65) / 0.35));
   return MakePose(ExpRotation(progress * turn) * s.from.linear(), p);
 }
 

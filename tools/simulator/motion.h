@@ -17,7 +17,7 @@ Pose OnTable(double x, double y, double z, double yaw);
 struct ThingSegment {
   double start = 0, end = 0;  ///< s; from `end` on it stays at `to`
   Pose from = Pose::Identity(), to = Pose::Identity();
-  double lift = 0;   ///< m, height of the path's arc
+  double lift = 0;   ///< m, by which it is lifted over what lies between
   int carrier = -1;  ///< another thing: it moves rigidly with it, at X_carrier_thing
   Pose X_carrier_thing = Pose::Identity();
 };

@@ -87,6 +87,7 @@ void AddClutter(const RoomOptions& options, Room* room, Random& random) {
     const double y = random.Uniform(-0.2, 0.3);
     const double yaw = random.Uniform(-3, 3);
     const Material m = RandomMaterial(random, patterns);
+    Place place{{x, y}, 0.06};
     switch (random.Pick(4)) {
       case 0: {
         const double r = random.Uniform(0.015, 0.03);
@@ -104,11 +105,13 @@ void AddClutter(const RoomOptions& options, Room* room, Random& random) {
         break;
       }
       default: {  // a pencil
+        place.radius = 0.08;
         Pose X = OnTable(x, y, 0.004, yaw);
         X.linear() = X.linear() * Eigen::AngleAxisd(M_PI / 2, Vector3::UnitX()).toRotationMatrix();
         room->fixtures.push_back({MakeCylinder(0.004, 0.15, 8), m, X});
       }
     }
+    room->clutter.push_back(place);
   }
 }
 

@@ -24,12 +24,19 @@ struct Fixture {
   Pose X_W = Pose::Identity();
 };
 
+/// A round place on the table, m.
+struct Place {
+  Eigen::Vector2d centre{0, 0};
+  double radius = 0;
+};
+
 struct Room {
   std::vector<Pattern> patterns;
   std::vector<Fixture> fixtures;
   Lighting lighting;
   Material skin, clothes, hair;
   BodyShape body;
+  std::vector<Place> clutter;  ///< where things lie that are no part
 };
 
 Room MakeRoom(const RoomOptions& options, Random& random);

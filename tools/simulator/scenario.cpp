@@ -15,9 +15,17 @@ namespace {
 /// What a scenario is made of while it is being made.
 struct Making {
   Making(const Task& t, const ScenarioOptions& options)
-      : task(t), random(options.seed), style(StyleByName(options.style)) {
+      : task(scenario.stage.task), random(options.seed), style(StyleByName(options.style)) {
     scenario.options = options;
     scenario.stage.task = t;
+    for (size_t i = 0, free_id = 1; i < task.types.size(); ++i) {
+      const auto taken = [&] {
+        return std::any_of(task.types.begin(), task.types.end(),
+                           [&](const PartType& type) { return type.bop_id == static_cast<int>(free_id); });
+      };
+      while (taken()) ++free_id;
+      if (task.types[i].bop_id == 0) task.types[i].bop_id = static_cast<int>(free_id);
+    }
     for (size_t i = 0; i < t.parts.size(); ++i) {
       const PartType& type = t.TypeOf(static_cast<int>(i));
       scenario.meshes.push_back(type.mesh);
@@ -71,13 +79,13 @@ struct Making {
     Task loose = task;
     loose.connections.clear();
     const Structure none = FinishedStructure(loose);
-    Place(ScatterParts(loose, *solids, none, Pose::Identity(), any_face, random));
+    Place(ScatterParts(loose, *solids, none, Pose::Identity(), scenario.stage.room.clutter, any_face, random));
   }
 
-  const Task& task;
+  Scenario scenario;
+  Task& task;
   Random random;
   ChildStyle style;
-  Scenario scenario;
   Structure structure;
   CameraModel camera;
   std::vector<Pose> props_at;
@@ -126,7 +134,7 @@ void Build(Making* m) {
     if (left_out >= 5) plan.mistakes = 0;
     if (left_out > 4) m->style.speed *= std::pow(1.3, left_out - 4), m->style.pause *= std::pow(0.6, left_out - 4);
     const Pose place = StructurePlace(m->task, m->structure, *m->solids, m->random);
-    m->Place(ScatterParts(m->task, *m->solids, m->structure, place, 0.3, m->random));
+    m->Place(ScatterParts(m->task, *m->solids, m->structure, place, m->scenario.stage.room.clutter, 0.3, m->random));
     m->child->set_now(1.2);
     PlayLesson(m->task, m->structure, *m->solids, plan, m->child.get(), &m->scenario.performance, m->random);
     const double limit = m->scenario.options.seconds;

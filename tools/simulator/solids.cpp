@@ -90,7 +90,7 @@ std::vector<Matrix3> Solids::Rests(int thing) const {
       if (w.z() < low + 2e-4) feet.emplace_back(w.x(), w.y());
     }
     const Vector3 c = R * centroid;
-    if (feet.size() >= 3 && InHull(feet, {c.x(), c.y()}, 0.002)) rests.push_back(R);
+    if (feet.size() >= 3 && InHull(feet, {c.x(), c.y()}, 0.35 * (c.z() - low))) rests.push_back(R);
   }
   if (rests.empty()) rests.push_back(Matrix3::Identity());
   return rests;

@@ -20,7 +20,8 @@ class Solids {
   /// Height (m) of the lowest point over the origin of a thing that is turned by R.
   double Lowest(int thing, const Matrix3& R) const;
   double Highest(int thing, const Matrix3& R) const;
-  /// Orientations in which the thing rests on one of its faces, yaw not varied; at least one.
+  /// Orientations in which the thing rests firmly on one of its faces (not on a small end), yaw not varied; at least
+  /// one.
   std::vector<Matrix3> Rests(int thing) const;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 namespace coach {
 namespace {
@@ -33,6 +34,13 @@ bool Equivalent(const Task& task, const TypedJoint& x, const TypedJoint& y) {
 
 }  // namespace
 
+std::vector<int> OwnConnections(const Task& task) {
+  if (!task.variants.empty()) return task.variants[0];
+  std::vector<int> all(task.connections.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 Structure FinishedStructure(const Task& task) {
   Structure s;
   s.X_slot.assign(task.slots.size(), Pose::Identity());
@@ -41,7 +49,8 @@ Structure FinishedStructure(const Task& task) {
   if (task.slots.empty()) return s;
   s.reached[0] = true;
   for (size_t round = 0; round < task.slots.size(); ++round) {
-    for (const Connection& c : task.connections) {
+    for (const int index : OwnConnections(task)) {
+      const Connection& c = task.connections[static_cast<size_t>(index)];
       const size_t a = static_cast<size_t>(c.slot_a), b = static_cast<size_t>(c.slot_b);
       if (s.reached[a] && !s.reached[b]) s.X_slot[b] = s.X_slot[a] * c.X_AB, s.reached[b] = true;
       if (s.reached[b] && !s.reached[a]) s.X_slot[a] = s.X_slot[b] * c.X_AB.inverse(), s.reached[a] = true;

@@ -8,7 +8,10 @@
 
 namespace coach {
 
-/// Poses of all slots in the frame of the first, along the connections; slots that no connection reaches keep the
+/// The task's own connections (indices), without those that only its variants use.
+std::vector<int> OwnConnections(const Task& task);
+
+/// Poses of all slots in the frame of the first, along the own connections; slots that no connection reaches keep the
 /// identity and are not `reached`.
 struct Structure {
   std::vector<Pose> X_slot;

@@ -1,5 +1,7 @@
 #include "tools/simulator/truth_files.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -45,14 +47,6 @@ Json Rotation(const Matrix3& R) {
 
 Json Millimetres(const Vector3& p) { return Json::array({Tidy(1000 * p.x()), Tidy(1000 * p.y()), Tidy(1000 * p.z())}); }
 
-std::string Numbers(const Json& list) {
-  std::ostringstream text;
-  text << '[';
-  for (size_t i = 0; i < list.size(); ++i) text << (i > 0 ? ", " : "") << list[i].dump();
-  text << ']';
-  return text.str();
-}
-
 Json JointOf(const Task& task, const std::string& name, const std::string& joint_class, int type_a, int type_b,
              const Pose& X_AB) {
   const PartType &a = task.types[static_cast<size_t>(type_a)], &b = task.types[static_cast<size_t>(type_b)];
@@ -75,12 +69,6 @@ std::string ModelFile(int bop_id) {
   name.fill('0');
   name << bop_id << ".ply";
   return name.str();
-}
-
-std::string Range(const std::array<int, 3>& bound) { return Numbers(Json(bound)); }
-
-void WriteJoint(std::ostream& out, const Pose& X) {
-  out << "rotation: " << Numbers(Rotation(X.linear())) << ", translation: " << Numbers(Millimetres(X.translation()));
 }
 
 }  // namespace
@@ -188,10 +176,11 @@ void WriteAssembly(const std::filesystem::path& folder, const Scenario& scenario
                      {"hue_wraps", range.low[0] > range.high[0]}});
   }
   Json connections = Json::array(), wrong = Json::array();
-  for (size_t c = 0; c < task.connections.size(); ++c) {
-    const Connection& joint = task.connections[c];
-    Json j = JointOf(task, joint.name, classes[c], task.slots[static_cast<size_t>(joint.slot_a)].type,
-                     task.slots[static_cast<size_t>(joint.slot_b)].type, joint.X_AB);
+  for (const int c : OwnConnections(task)) {
+    const Connection& joint = task.connections[static_cast<size_t>(c)];
+    Json j =
+        JointOf(task, joint.name, classes[static_cast<size_t>(c)], task.slots[static_cast<size_t>(joint.slot_a)].type,
+                task.slots[static_cast<size_t>(joint.slot_b)].type, joint.X_AB);
     j["node_a"] = joint.slot_a;
     j["node_b"] = joint.slot_b;
     j["closes_by_itself"] = joint.closes_by_itself;
@@ -220,51 +209,21 @@ void WriteAssembly(const std::filesystem::path& folder, const Scenario& scenario
 }
 
 void WriteTask(const std::filesystem::path& folder, const Task& task, const std::vector<HsvRange>& ranges) {
-  auto out = Open(folder / "task.yaml");
-  out << "name: " << task.name << "\nunits: mm\nparts:\n";
+  // The task's own file, so that nothing of it is lost; only the meshes and the colours are those of the scene.
+  YAML::Node root = YAML::LoadFile(task.file);
   for (size_t t = 0; t < task.types.size(); ++t) {
-    const PartType& type = task.types[t];
-    out << "  - type: " << type.name << "\n    count: " << type.count << "\n    mesh: " << ModelFile(type.bop_id)
-        << "\n    mesh_units: mm\n    bop_id: " << type.bop_id << "\n";
-    if (!type.colour.empty()) out << "    colour: " << type.colour << "\n";
-    out << "    hsv: {low: " << Range(ranges[t].low) << ", high: " << Range(ranges[t].high) << "}\n";
-    if (type.symmetries.trivial()) continue;
-    out << "    symmetries:\n      discrete: [";
-    for (size_t s = 1; s < type.symmetries.discrete.size(); ++s) {
-      out << (s > 1 ? ", " : "") << Numbers(Rotation(type.symmetries.discrete[s]));
-    }
-    out << "]\n      continuous: [";
-    for (size_t s = 0; s < type.symmetries.axes.size(); ++s) {
-      const Vector3& axis = type.symmetries.axes[s];
-      out << (s > 0 ? ", " : "") << Numbers(Json::array({Tidy(axis.x()), Tidy(axis.y()), Tidy(axis.z())}));
-    }
-    out << "]\n";
+    YAML::Node part = root["parts"][t];
+    part["mesh"] = ModelFile(task.types[t].bop_id);
+    part["mesh_units"] = "mm";
+    part["bop_id"] = task.types[t].bop_id;
+    YAML::Node hsv;
+    hsv.SetStyle(YAML::EmitterStyle::Flow);
+    for (const int x : ranges[t].low) hsv["low"].push_back(x);
+    for (const int x : ranges[t].high) hsv["high"].push_back(x);
+    part["hsv"] = hsv;
   }
-  if (!task.slots.empty()) out << "slots:\n";
-  for (const Slot& slot : task.slots) {
-    out << "  - {name: " << slot.name << ", type: " << task.types[static_cast<size_t>(slot.type)].name << "}\n";
-  }
-  if (!task.connections.empty()) out << "connections:\n";
-  for (const Connection& c : task.connections) {
-    out << "  - {name: " << c.name << ", slots: [" << task.slots[static_cast<size_t>(c.slot_a)].name << ", "
-        << task.slots[static_cast<size_t>(c.slot_b)].name << "], ";
-    WriteJoint(out, c.X_AB);
-    out << (c.closes_by_itself ? ", closes_by_itself: true" : "") << "}\n";
-  }
-  if (!task.mistakes.empty()) out << "mistakes:\n";
-  for (const Mistake& m : task.mistakes) {
-    out << "  - {name: " << m.name << ", types: [" << task.types[static_cast<size_t>(m.type_a)].name << ", "
-        << task.types[static_cast<size_t>(m.type_b)].name << "], ";
-    WriteJoint(out, m.X_AB);
-    out << "}\n";
-  }
-  if (!task.steps.empty()) {
-    out << "steps: [";
-    for (size_t s = 0; s < task.steps.size(); ++s) {
-      out << (s > 0 ? ", " : "") << task.connections[static_cast<size_t>(task.steps[s])].name;
-    }
-    out << "]\n";
-  }
+  auto out = Open(folder / "task.yaml");
+  out << root << "\n";
   Close(folder / "task.yaml", &out);
 }
 
