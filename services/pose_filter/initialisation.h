@@ -15,7 +15,7 @@
 namespace coach {
 
 struct InitialisationOptions {
-  int step = 4;                     ///< px between the depth readings that are used
+  int step = 2;                     ///< px between the depth readings that are used
   double farthest = 3;              ///< m; farther readings are not looked at
   double plane_distance = 0.008;    ///< m from the table's plane that still is table
   int plane_iterations = 300;       ///< RANSAC triples
@@ -23,8 +23,8 @@ struct InitialisationOptions {
   double lowest = 0.010;            ///< m above the plane; below it is table
   double highest = 0.4;             ///< m above the plane; above it is background
   double cluster_distance = 0.015;  ///< m, DBSCAN's neighbourhood
-  int cluster_neighbours = 8;       ///< DBSCAN: of a core point
-  int least_points = 25;            ///< of a cluster
+  int cluster_neighbours = 10;      ///< DBSCAN: of a core point
+  int least_points = 40;            ///< of a cluster
   int candidates = 40;              ///< random rotations
   int icp_iterations = 30;
   double icp_distance = 0.02;  ///< m, of corresponding points
