@@ -7,6 +7,7 @@
 #include "common/bus/command_signature.h"
 #include "common/bus/service_main.h"
 #include "services/robot_bridge/log_back_end.h"
+#include "services/robot_bridge/nao_robot.h"
 #include "services/robot_bridge/robot_bridge_service.h"
 #include "services/robot_bridge/robot_options.h"
 #include "services/robot_bridge/virtual_robot.h"
@@ -19,7 +20,7 @@ std::unique_ptr<BackEnd> MakeBackEnd(const RobotOptions& options, const Station&
   if (options.back_end == "log") {
     return std::make_unique<LogBackEnd>([](const std::string& line) { spdlog::info("robot: {}", line); });
   }
-  if (options.back_end == "nao") throw ConfigurationError("robot: back_end: found nao, expected virtual or log");
+  if (options.back_end == "nao") return std::make_unique<NaoRobot>(options.nao);
   auto robot = std::make_unique<VirtualRobot>(options.virtual_robot, options.conductor.X_TR);
   if (!station.task.empty()) robot->ShowTask(LoadTask(station.task));
   spdlog::info("virtual robot: {}", robot->url());

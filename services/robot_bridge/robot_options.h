@@ -5,16 +5,10 @@
 
 #include "common/configuration/yaml_reader.h"
 #include "services/robot_bridge/conductor.h"
+#include "services/robot_bridge/nao_robot.h"
 #include "services/robot_bridge/screen_server.h"
 
 namespace coach {
-
-struct NaoOptions {
-  std::string url = "tcp://nao.local:9559";  ///< tcp://host:port or tcps://host:port
-  std::string user, token;                   ///< both empty: no login
-  double call_timeout_s = 5;                 ///< s, of short calls; motion gets its own length more
-  double largest_volume = 0.8;               ///< 0..1
-};
 
 struct RobotOptions {
   std::string back_end = "virtual";  ///< virtual, nao or log

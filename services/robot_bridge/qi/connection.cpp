@@ -1,0 +1,191 @@
+#include "services/robot_bridge/qi/connection.h"
+
+#include <utility>
+
+#include "services/robot_bridge/qi/codec.h"
+
+namespace coach::qi {
+namespace {
+
+constexpr size_t kMostPending = 256;
+constexpr uint32_t kAuthenticateAction = 8;
+constexpr int64_t kLoginDone = 3;
+
+const Signature& Dynamic() {
+  static const Signature kDynamic = ParseSignature("m");
+  return kDynamic;
+}
+const Signature& Capabilities() {
+  static const Signature kCapabilities = ParseSignature("{sm}");
+  return kCapabilities;
+}
+
+}  // namespace
+
+Result ResultOf(const Message& message, const Signature& returned) {
+  Result result;
+  try {
+    switch (message.type) {
+      case MessageType::kReply: {
+        const bool dynamic = (message.flags & kDynamicPayload) != 0;
+        result.value = Decode(dynamic ? Dynamic() : returned, message.payload);
+        result.ok = true;
+        break;
+      }
+      case MessageType::kError:
+        result.error = Decode(Dynamic(), message.payload).Text();
+        if (result.error.empty()) result.error = "the robot reports an error without a word";
+        break;
+      default:
+        result.error = "the call was cancelled";
+    }
+  } catch (const FormatError& error) {
+    result.ok = false;
+    result.error = std::string("an answer that can't be read: ") + error.what();
+  }
+  return result;
+}
+
+Session::Connection::Connection(const Endpoint& endpoint, const SessionOptions& options, int64_t now)
+    : options_(options), transport_(endpoint), now_(now) {}
+
+void Session::Connection::Authenticate() {
+  Map capabilities;
+  const auto add = [&](const char* name, Value value) { capabilities.items.emplace_back(name, std::move(value)); };
+  add("ClientServerSocket", true);
+  add("MessageFlags", true);
+  add("MetaObjectCache", false);
+  add("RemoteCancelableCalls", false);
+  add("ObjectPtrUID", false);
+  if (!options_.user.empty()) add("auth_user", options_.user);
+  if (!options_.token.empty()) add("auth_token", options_.token);
+  Message message;
+  message.id = login_id_ = next_id_++;
+  message.action = kAuthenticateAction;
+  message.payload = Encode(Capabilities(), capabilities);
+  stage_ = Stage::kAuthenticating;
+  transport_.Send(message);
+}
+
+void Session::Connection::HandleLogin(const Message& message) {
+  const bool login_asked = !options_.user.empty() || !options_.token.empty();
+  if (message.type != MessageType::kReply && message.type != MessageType::kCapability) {
+    const std::string error = ResultOf(message, Capabilities()).error;
+    // A server that knows no authentication answers with an error; one that refuses ours does too.
+    if (login_asked) {
+      transport_.Close("login refused: " + error);
+      return;
+    }
+  } else if (message.type == MessageType::kReply) {
+    const Result result = ResultOf(message, Capabilities());
+    const Value* state = result.value.Find("__qi_auth_state");
+    if (!result.ok) {
+      transport_.Close("login: " + result.error);
+      return;
+    }
+    if (state != nullptr && state->Integer() != kLoginDone) {
+      const Value* reason = result.value.Find("__qi_auth_err_reason");
+      transport_.Close("login refused" + (reason == nullptr ? "" : ": " + reason->Text()));
+      return;
+    }
+  } else if (login_asked) {
+    transport_.Close("login refused: the robot knows no login");
+    return;
+  }
+  stage_ = Stage::kReady;
+  for (const Message& waiting : std::exchange(waiting_, {})) transport_.Send(waiting);
+}
+
+void Session::Connection::Call(const Address& address, std::string payload, const Signature& returned,
+                               OnResult on_result, int64_t timeout_us) {
+  if (closed() || pending_.size() >= kMostPending) {
+    on_result({false, {}, closed() ? problem() : "too many calls are under way"});
+    return;
+  }
+  Message message;
+  message.id = next_id_++;
+  message.service = address.service;
+  message.object = address.object;
+  message.action = address.action;
+  message.payload = std::move(payload);
+  pending_[message.id] = {returned, std::move(on_result), now_ + timeout_us, timeout_us};
+  if (stage_ == Stage::kReady) {
+    transport_.Send(message);
+  } else {
+    waiting_.push_back(std::move(message));
+  }
+}
+
+void Session::Connection::OnEvent(const Address& address, const Signature& parameters,
+                                  std::function<void(const Value&)> on_value) {
+  listeners_[address] = {parameters, std::move(on_value)};
+}
+
+void Session::Connection::HandleEvent(const Message& message) {
+  const auto found = listeners_.find({message.service, message.object, message.action});
+  if (found == listeners_.end()) return;
+  const Listener listener = found->second;
+  try {
+    const bool dynamic = (message.flags & kDynamicPayload) != 0;
+    listener.on_value(Decode(dynamic ? Dynamic() : listener.parameters, message.payload));
+  } catch (const FormatError&) {
+    // An event that can't be read says nothing; the next one may.
+  }
+}
+
+void Session::Connection::Handle(const Message& message) {
+  if (stage_ == Stage::kAuthenticating) {
+    const bool answer = message.id == login_id_ && message.type != MessageType::kEvent;
+    if (answer || message.type == MessageType::kCapability) HandleLogin(message);
+    return;
+  }
+  switch (message.type) {
+    case MessageType::kReply:
+    case MessageType::kError:
+    case MessageType::kCancelled: {
+      const auto found = pending_.find(message.id);
+      if (found == pending_.end()) return;  // too late: its time was over
+      const Pending pending = std::move(found->second);
+      pending_.erase(found);
+      pending.on_result(ResultOf(message, pending.returned));
+      return;
+    }
+    case MessageType::kEvent:
+    case MessageType::kPost:
+      HandleEvent(message);
+      return;
+    default:
+      return;
+  }
+}
+
+void Session::Connection::Expire() {
+  std::vector<Pending> late;
+  for (auto i = pending_.begin(); i != pending_.end();) {
+    if (i->second.deadline > now_) {
+      ++i;
+    } else {
+      late.push_back(std::move(i->second));
+      i = pending_.erase(i);
+    }
+  }
+  for (const Pending& pending : late) {
+    pending.on_result({false, {}, "no answer within " + std::to_string(pending.timeout / 1000) + " ms"});
+  }
+}
+
+void Session::Connection::Poll(int64_t now) {
+  now_ = now;
+  transport_.Poll();
+  if (stage_ == Stage::kConnecting && transport_.state() == Transport::State::kOpen) Authenticate();
+  while (const auto message = transport_.Receive()) Handle(*message);
+  Expire();
+}
+
+void Session::Connection::FailAll(const std::string& error) {
+  transport_.Close(error);
+  listeners_.clear();
+  for (const auto& [id, pending] : std::exchange(pending_, {})) pending.on_result({false, {}, error});
+}
+
+}  // namespace coach::qi
