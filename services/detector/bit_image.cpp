@@ -55,6 +55,7 @@ void ExtractBit(const uint8_t* classes, int width, int height, int bit, BitImage
     for (; x + 8 <= width; x += 8) {
       uint64_t bytes;
       std::memcpy(&bytes, row + x, 8);
+      if (bytes == 0) continue;  // most of an image is in no class
       bytes = bytes >> bit & 0x0101010101010101;
       // The product moves the lowest bit of byte i to bit 56 + i.
       words[x / 64] |= (bytes * 0x0102040810204080) >> 56 << (x % 64);

@@ -33,6 +33,8 @@ class ColourTable {
   void Classify(const cv::Mat& bgr, const ChannelGains& gains, uint8_t* classes) const;
 
  private:
+  void ClassifyRow(const uint8_t* pixels, size_t columns, uint8_t* out) const;
+
   std::vector<uint8_t> cells_;
 };
 

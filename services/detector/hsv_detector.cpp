@@ -49,7 +49,11 @@ Detections HsvDetector::Detect(const cv::Mat& bgr, const cv::Mat& depth, double 
   out.width = bgr.cols;
   out.height = bgr.rows;
   out.class_map.resize(bgr.total());
-  table_.Classify(bgr, {1, 1, 1}, out.class_map.data());
+  ChannelGains gains{1, 1, 1};
+  if (options_.background) {
+    if (const auto seen = BackgroundChromaticity(bgr)) gains = BalancingGains(*options_.background, *seen);
+  }
+  table_.Classify(bgr, gains, out.class_map.data());
   const bool depth_usable = depth.type() == CV_16UC1 && depth.size() == bgr.size();
   for (int c = 0; c < num_classes_; ++c) FindRegions(c, depth_usable ? depth : cv::Mat(), metres_per_unit, out);
   return out;

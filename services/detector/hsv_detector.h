@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/assembly/task.h"
@@ -10,6 +11,7 @@
 #include "services/detector/colour_table.h"
 #include "services/detector/connected_components.h"
 #include "services/detector/detector.h"
+#include "services/detector/white_balance.h"
 
 namespace coach {
 
@@ -20,6 +22,9 @@ struct HsvDetectorOptions {
   int closing = 1;                 ///< px, radius; joins what a line of bad pixels cuts
   double shared_colour = 0.5;  ///< a region is a candidate of each class that holds at least this share of its pixels
   int samples = 256;           ///< pixels looked at a region for its median depth and its candidate types
+  /// BackgroundChromaticity of the pictures by which the HSV ranges were chosen. Given, each frame is brought back to
+  /// it before its colours are looked up; empty: colours are taken as they are.
+  std::optional<Chromaticity> background;
 };
 
 /// Pixels are classified by the HSV ranges of the task's colour classes (ColourTable). The class map shows the raw

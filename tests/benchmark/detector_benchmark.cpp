@@ -47,6 +47,15 @@ void BM_Detect(benchmark::State& state) {
 }
 BENCHMARK(BM_Detect)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Unit(benchmark::kMicrosecond);
 
+void BM_DetectBalanced(benchmark::State& state) {
+  const cv::Mat image = Scene(2), depth(480, 640, CV_16UC1, cv::Scalar(900));
+  HsvDetectorOptions options;
+  options.background = Chromaticity{0, 0.1};
+  HsvDetector detector(TaskWithClasses(2), options);
+  for (auto _ : state) benchmark::DoNotOptimize(detector.Detect(image, depth, 0.001).regions.data());
+}
+BENCHMARK(BM_DetectBalanced)->Unit(benchmark::kMicrosecond);
+
 void BM_Classify(benchmark::State& state) {
   const cv::Mat image = Scene(4);
   const ColourTable table({{{0, 120, 40}, {12, 255, 255}}, {{60, 120, 40}, {72, 255, 255}}});

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <random>
 
+#include "services/pose_filter/collision.h"
 #include "services/pose_filter/depth_renderer.h"
 #include "services/pose_filter/observation_model.h"
+#include "services/pose_filter/paper_filter.h"
 #include "services/pose_filter/process_model.h"
-#include "tests/support/test_meshes.h"
+#include "tests/support/test_scene.h"
 
 namespace coach {
 namespace {
@@ -101,6 +103,58 @@ void BM_Propagate(benchmark::State& state) {
   for (auto _ : state) Propagate({}, 1 / 30.0, random, motion);
 }
 BENCHMARK(BM_Propagate);
+
+void BM_Overlap(benchmark::State& state) {
+  const CollisionShape brick(BoxMesh({0.12, 0.03, 0.03}));
+  Pose beside = Pose::Identity();
+  beside.translation() << 0.045, 0.03 - 1e-3 * static_cast<double>(state.range(0)), 0;
+  for (auto _ : state) benchmark::DoNotOptimize(Overlap(brick, Pose::Identity(), brick, beside, 0.002));
+}
+BENCHMARK(BM_Overlap)->Arg(-50)->Arg(0)->Arg(1)->Arg(5)->ArgName("depth_mm");
+
+void BM_DistanceField(benchmark::State& state) {
+  const DistanceField field(BoxMesh({0.12, 0.03, 0.03}));
+  Eigen::Vector3f p(0.01F, 0.012F, 0.003F);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(field.At(p));
+    p.x() = -p.x();
+  }
+}
+BENCHMARK(BM_DistanceField);
+
+/// A whole step of the paper's filter on drawn pictures: parts, particles, px between grid points.
+void BM_PaperStep(benchmark::State& state) {
+  const int parts = static_cast<int>(state.range(0));
+  const Task task = TestTask({TestType("brick", BoxMesh({0.06, 0.02, 0.02}), true, parts)});
+  std::vector<Pose> truth;
+  for (int p = 0; p < parts; ++p)
+    truth.push_back(OnTable(-0.25 + 0.1 * (p % 6), -0.15 + 0.07 * (p / 6), 0.4 * p, 0.01));
+  const TestPicture picture = DrawScene(task, truth, 1);
+  PaperFilterOptions options;
+  options.particles = static_cast<int>(state.range(1));
+  options.step = static_cast<int>(state.range(2));
+  options.start_interval = 1e6;
+  PaperFilter filter(task, options, 1);
+  filter.Suggest(truth);
+  FilterInput input;
+  input.camera = picture.camera;
+  input.depth = picture.depth;
+  for (auto _ : state) {
+    input.utime += 33333;
+    benchmark::DoNotOptimize(filter.Step(input).parts.data());
+  }
+}
+BENCHMARK(BM_PaperStep)
+    ->ArgNames({"parts", "particles", "step"})
+    ->Args({2, 200, 5})
+    ->Args({6, 200, 5})
+    ->Args({12, 200, 5})
+    ->Args({30, 200, 5})
+    ->Args({6, 50, 5})
+    ->Args({6, 800, 5})
+    ->Args({6, 200, 8})
+    ->Args({6, 200, 2})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace coach

@@ -66,6 +66,25 @@ TEST(ColourTable, GainsActBeforeTheLookUp) {
   EXPECT_EQ(saturated, table.Classify(10, 10, 255)) << "levels stop at 255";
 }
 
+TEST(ColourTable, WholeImageIsPixelByPixel) {
+  const ColourTable table(kRanges);
+  std::mt19937_64 generator(2);
+  for (const int width : {1, 2, 17}) {
+    cv::Mat image(5, width, CV_8UC3);
+    for (int y = 0; y < 5; ++y) {
+      for (int i = 0; i < 3 * width; ++i) image.ptr<uint8_t>(y)[i] = static_cast<uint8_t>(generator());
+    }
+    std::vector<uint8_t> plain(image.total()), with_gains(image.total());
+    table.Classify(image, {1, 1, 1}, plain.data());
+    table.Classify(image, {1.0001F, 1, 1}, with_gains.data());
+    EXPECT_EQ(plain, with_gains);
+    for (int i = 0; i < 5 * width; ++i) {
+      const auto p = image.at<cv::Vec3b>(i / width, i % width);
+      ASSERT_EQ(plain[static_cast<size_t>(i)], table.Classify(p[0], p[1], p[2]));
+    }
+  }
+}
+
 TEST(ColourTable, RefusesWhatItCannotHold) {
   EXPECT_THROW(ColourTable(std::vector<HsvRange>(9)), std::invalid_argument);
   EXPECT_THROW(ColourTable({HsvRange{{0, 0, 0}, {180, 255, 255}}}), std::invalid_argument);
