@@ -3,9 +3,11 @@
 #include <OpenNI.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -30,8 +32,10 @@ class OpenNiLibrary {
   OpenNiLibrary& operator=(const OpenNiLibrary&) = delete;
 
   static std::string Error(const std::string& what) {
-    std::string why = openni::OpenNI::getExtendedError();
-    while (!why.empty() && (why.back() == '\n' || why.back() == '\t')) why.pop_back();
+    std::string why;
+    for (const char* c = openni::OpenNI::getExtendedError(); *c; ++c) {
+      if (*c != '\n' && *c != '\t') why += *c;
+    }
     return why.empty() ? what : what + ": " + why;
   }
 };
@@ -53,12 +57,37 @@ class ClockMap {
   double offset_ = 0;
 };
 
+/// Hears when a device is unplugged.
+class UnpluggedListener final : public openni::OpenNI::DeviceDisconnectedListener {
+ public:
+  UnpluggedListener() { openni::OpenNI::addDeviceDisconnectedListener(this); }
+  ~UnpluggedListener() { openni::OpenNI::removeDeviceDisconnectedListener(this); }
+  UnpluggedListener(const UnpluggedListener&) = delete;
+  UnpluggedListener& operator=(const UnpluggedListener&) = delete;
+
+  void Watch(const openni::Device& device) {
+    const std::lock_guard lock(mutex_);
+    uri_ = device.getDeviceInfo().getUri();
+  }
+  bool unplugged() const { return unplugged_; }
+
+ private:
+  void onDeviceDisconnected(const openni::DeviceInfo* info) override {
+    const std::lock_guard lock(mutex_);
+    if (uri_ == info->getUri()) unplugged_ = true;
+  }
+  std::mutex mutex_;
+  std::string uri_;
+  std::atomic<bool> unplugged_{false};
+};
+
 class OpenNiSource final : public FrameSource {
  public:
   OpenNiSource(const std::string& uri, bool recording, const CaptureOptions& options)
       : recording_(recording), options_(options) {
     if (device_.open(uri.empty() ? openni::ANY_DEVICE : uri.c_str()) != openni::STATUS_OK)
       throw SourceLost(OpenNiLibrary::Error(uri.empty() ? "no camera" : "no camera " + uri));
+    listener_.Watch(device_);
     if (recording_)
       OpenRecording();
     else
@@ -82,6 +111,7 @@ class OpenNiSource final : public FrameSource {
     for (int waited = 0;;) {
       openni::VideoStream* streams[] = {&depth_, &colour_};
       int ready = -1;
+      if (listener_.unplugged()) throw SourceLost("the camera is gone");
       const int wait = recording_ ? kEndOfFile_ms : timeout_ms;
       const openni::Status status = openni::OpenNI::waitForAnyStream(streams, colour_.isValid() ? 2 : 1, &ready, wait);
       if (status == openni::STATUS_TIME_OUT) return recording_ ? Outcome::kEnd : Outcome::kNothing;
@@ -200,6 +230,7 @@ class OpenNiSource final : public FrameSource {
   }
 
   OpenNiLibrary library_;
+  UnpluggedListener listener_;
   bool recording_;
   CaptureOptions options_;
   openni::Device device_;
