@@ -173,14 +173,20 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   const std::optional<Pose> carried = CarriedBy(part, carried_covariance);
   PoseCandidate best =
       Polish(shape.model, observation, owners_, part, bit, X_CT * predicted, options_.refinement, scratch_);
-  const Vector3 expected = X_CT * (carried ? *carried : predicted).translation();
+  // Between likely poses the expected one wins: another may be the empty place of an equal part, or one of the turns that
+  // look almost the same when little is seen. The likelihood counts neighbouring pixels as witnesses of their own, so the
+  // prior is measured in shares of it.
+  const Pose expected = X_CT * (carried ? *carried : predicted);
+  const double unit = std::max(options_.least_jump_cost, options_.jump_cost * best.score.log_likelihood);
+  const double reach = 0.03 + 0.5 * track.velocity.head<3>().norm() * dt, turn = track.moving ? 0.7 : 0.4;
+  const auto posterior = [&](const PoseCandidate& c) {
+    const Vector6 away = Difference(expected, c.X_CP);
+    const double distance = away.head<3>().squaredNorm() / (reach * reach) + away.tail<3>().squaredNorm() / (turn * turn);
+    return c.score.log_likelihood - unit * std::min(3.0, distance);
+  };
   const auto consider = [&](const Pose& X_CP) {
     const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit, X_CP, options_.refinement, scratch_);
-    // Between likely poses the near one wins: a far one may be the empty place of an equal part.
-    const auto penalty = [&](const Pose& X) {
-      return options_.jump_penalty * std::min(4.0, (X.translation() - expected).squaredNorm() / (0.03 * 0.03));
-    };
-    if (c.score.log_likelihood - penalty(c.X_CP) > best.score.log_likelihood - penalty(best.X_CP)) best = c;
+    if (posterior(c) > posterior(best)) best = c;
   };
   const Pose particle = BestParticle(part, observation, predicted, track.X_TP, dt);
   const Vector6 away = Difference(best.X_CP, particle);
@@ -313,9 +319,11 @@ void FullFilter::Recover(const Observation& observation) {
         if (std::find(tried_types.begin(), tried_types.end(), type) != tried_types.end()) continue;
         tried_types.push_back(type);
         --left;
+        const std::optional<Pose> former =
+            tracks_[k].status == PartStatus::kAbsent ? std::nullopt : std::optional<Pose>(camera_.X_TC().inverse() * tracks_[k].X_TP);
         const auto found =
             SearchPose(ShapeOf(static_cast<int>(k)).model, ShapeOf(static_cast<int>(k)).search_points, observation,
-                       owners_, static_cast<int>(k), bit_of_part_[k], blob, camera_.X_TC(), options_.search, scratch_);
+                       owners_, static_cast<int>(k), bit_of_part_[k], blob, camera_.X_TC(), options_.search, former ? &*former : nullptr, scratch_);
         if (!found || found->score.log_likelihood <= best_gain || !Plausible(static_cast<int>(k), *found)) continue;
         best_gain = found->score.log_likelihood;
         best = *found;

@@ -22,8 +22,10 @@ struct FullFilterOptions {
   double link_probability = 0.6;  ///< from here on a believed connection links two parts
   double link_position = 0.0015;  ///< m, play of a link
   double link_rotation = 0.015;   ///< rad
-  double jump_penalty =
-      300;  ///< nats for a pose 3 cm from where the part was expected; grows with the square, at most four times
+  /// Of the likelihood, for a pose one reach (3 cm and more) or turn (0.4 rad) from the expected one; grows with the
+  /// square, at most three times.
+  double jump_cost = 0.03;
+  double least_jump_cost = 150;   ///< nats
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
   TrackOptions track;

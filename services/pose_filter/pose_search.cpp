@@ -65,8 +65,7 @@ PoseCandidate Polish(const PartModel& model, const Observation& observation, con
 
 std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& points, const Observation& observation,
                                         const OwnerMap& owners, int part, uint8_t class_bit, const Blob& blob,
-                                        const Pose& X_TC, const PoseSearchOptions& options,
-                                        RefinementScratch& scratch) {
+                                        const Pose& X_TC, const PoseSearchOptions& options, const Pose* former_X_CP, RefinementScratch& scratch) {
   if (blob.readings < 3) return std::nullopt;
   struct Ranked {
     float score;
@@ -135,7 +134,14 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
     X.linear() = best_pose.linear() * S;
     found.push_back(Polish(model, observation, owners, part, class_bit, X, full, scratch));
   }
-  const PoseCandidate best = *std::min_element(found.begin(), found.end(), likelier);
+  PoseCandidate best = *std::min_element(found.begin(), found.end(), likelier);
+  if (former_X_CP) {
+    const auto turned = [&](const PoseCandidate& c) { return RotationError(model.symmetries, former_X_CP->linear(), c.X_CP.linear()); };
+    const double enough = options.almost_as_likely * best.score.log_likelihood;
+    for (const PoseCandidate& c : found) {
+      if (c.score.log_likelihood > enough && turned(c) < turned(best)) best = c;
+    }
+  }
   const bool good = best.score.agreement() >= options.least_agreement &&
                     best.score.open() >= options.least_visible * best.full_samples && best.score.open() >= 12 &&
                     best.outline_support() >= options.least_outline &&
