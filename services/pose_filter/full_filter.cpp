@@ -193,13 +193,7 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   if (best.score.agreement() < 0.9 || away.head<3>().norm() > 0.015) consider(particle);
   if (track.moving) consider(X_CT * track.X_TP);
   if (carried) consider(X_CT * *carried);
-  // One of the poses that look almost the same, in turn: a slip is noticed within a few frames.
-  if (!shape.model.near_symmetries.empty() && best.score.open() > 30) {
-    Pose X = best.X_CP;
-    X.linear() =
-        X.linear() * shape.model.near_symmetries[static_cast<size_t>(steps_) % shape.model.near_symmetries.size()];
-    consider(X);
-  }
+  TestRivals(part, observation, dt, best);
   const double in_image = InImageFraction(shape.model, observation.camera, best.X_CP);
   const double open = best.full_samples > 0 ? best.score.open() / best.full_samples : 0;
   if (!observation.depth && !observation.class_map) {
@@ -229,6 +223,33 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   }
   updated_[part] = !track.missing() || carried;
   Place(part, observation);
+}
+
+void FullFilter::TestRivals(int part, const Observation& observation, double dt, PoseCandidate& best) {
+  Track& track = tracks_[part];
+  const Shape& shape = ShapeOf(part);
+  const size_t n = shape.model.near_symmetries.size();
+  track.rival.resize(n, 0.0f);
+  track.seen_for = track.missing() ? 0 : track.seen_for + dt;
+  if (n == 0 || best.score.open() < options_.rival_open * best.full_samples || best.score.open() < 30) return;
+  // In turn; more often while the part was seen for less than a second.
+  const int tests = std::min(static_cast<int>(n), track.seen_for < 1.0 ? 3 : 1);
+  for (int i = 0; i < tests; ++i) {
+    const size_t which = static_cast<size_t>(track.next_rival++) % n;
+    Pose X = best.X_CP;
+    X.linear() = X.linear() * shape.model.near_symmetries[which];
+    const PoseCandidate c =
+        Polish(shape.model, observation, owners_, part, bit_of_part_[part], X, options_.refinement, scratch_);
+    // Small but lasting differences decide: pixels are no independent witnesses, frames nearly are.
+    const double gain = c.score.log_likelihood - best.score.log_likelihood;
+    const double unit = std::max(60.0, options_.rival_gain * std::abs(best.score.log_likelihood));
+    track.rival[which] = static_cast<float>(std::clamp(track.rival[which] + gain / unit - 0.5, 0.0, 3.0));
+    if (track.rival[which] < 1.5f) continue;
+    best = c;
+    std::fill(track.rival.begin(), track.rival.end(), 0.0f);
+    track.seen_for = 0;
+    return;
+  }
 }
 
 void FullFilter::UpdateLinks(const FilterInput& input) {

@@ -25,6 +25,8 @@ struct FullFilterOptions {
   /// Of the likelihood, for a pose one reach (3 cm and more) or turn (0.4 rad) from the expected one; grows with the
   /// square, at most three times.
   double jump_cost = 0.03;
+  double rival_open = 0.35;  ///< share of the silhouette that must be open for a near symmetry to be tried
+  double rival_gain = 0.015;  ///< of the likelihood, by which it must be better for several frames
   double least_jump_cost = 150;   ///< nats
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
@@ -62,6 +64,8 @@ class FullFilter final : public PoseFilter {
 
   void LocateCamera(const Observation& observation);
   void BuildOwners(const Observation& observation, double dt);
+  /// Tries poses that look almost the same as `best` and takes one over if it has been the better one for some frames.
+  void TestRivals(int part, const Observation& observation, double dt, PoseCandidate& best);
   void UpdateLinks(const FilterInput& input);
   std::optional<Pose> CarriedBy(int part, Matrix6& covariance) const;
   void UpdateTrack(int part, const Observation& observation, double dt);
