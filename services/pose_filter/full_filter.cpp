@@ -173,16 +173,17 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   const std::optional<Pose> carried = CarriedBy(part, carried_covariance);
   PoseCandidate best =
       Polish(shape.model, observation, owners_, part, bit, X_CT * predicted, options_.refinement, scratch_);
-  // Between likely poses the expected one wins: another may be the empty place of an equal part, or one of the turns that
-  // look almost the same when little is seen. The likelihood counts neighbouring pixels as witnesses of their own, so the
-  // prior is measured in shares of it.
+  // Between likely poses the expected one wins: another may be the empty place of an equal part, or one of the turns
+  // that look almost the same when little is seen. The likelihood counts neighbouring pixels as witnesses of their own,
+  // so the prior is measured in shares of it.
   const Pose expected = X_CT * (carried ? *carried : predicted);
   const double unit = std::max(options_.least_jump_cost, options_.jump_cost * best.score.log_likelihood);
   const double reach = 0.03 + 0.5 * track.velocity.head<3>().norm() * dt, turn = track.moving ? 0.7 : 0.4;
   const auto posterior = [&](const PoseCandidate& c) {
     const Vector6 away = Difference(expected, c.X_CP);
-    const double distance = away.head<3>().squaredNorm() / (reach * reach) + away.tail<3>().squaredNorm() / (turn * turn);
-    return c.score.log_likelihood - unit * std::min(3.0, distance);
+    const double distance =
+        away.head<3>().squaredNorm() / (reach * reach) + away.tail<3>().squaredNorm() / (turn * turn);
+    return c.score.log_likelihood - unit * std::min(3.0, distance) - CollisionCost(part, c);
   };
   const auto consider = [&](const Pose& X_CP) {
     const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit, X_CP, options_.refinement, scratch_);
@@ -225,6 +226,17 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   Place(part, observation);
 }
 
+double FullFilter::CollisionCost(int part, const PoseCandidate& candidate) const {
+  const Pose X_TP = camera_.X_TC() * candidate.X_CP;
+  double overlap = 0;
+  for (size_t k = 0; k < tracks_.size(); ++k) {
+    if (static_cast<int>(k) == part || tracks_[k].missing()) continue;
+    overlap += pairs_.Overlap(part, X_TP, static_cast<int>(k), tracks_[k].X_TP, options_.allowed_overlap);
+  }
+  return std::min(1.0, overlap / options_.full_overlap) * options_.collision_cost *
+         std::abs(candidate.score.log_likelihood);
+}
+
 void FullFilter::TestRivals(int part, const Observation& observation, double dt, PoseCandidate& best) {
   Track& track = tracks_[part];
   const Shape& shape = ShapeOf(part);
@@ -241,7 +253,8 @@ void FullFilter::TestRivals(int part, const Observation& observation, double dt,
     const PoseCandidate c =
         Polish(shape.model, observation, owners_, part, bit_of_part_[part], X, options_.refinement, scratch_);
     // Small but lasting differences decide: pixels are no independent witnesses, frames nearly are.
-    const double gain = c.score.log_likelihood - best.score.log_likelihood;
+    const double gain =
+        c.score.log_likelihood - CollisionCost(part, c) - best.score.log_likelihood + CollisionCost(part, best);
     const double unit = std::max(60.0, options_.rival_gain * std::abs(best.score.log_likelihood));
     track.rival[which] = static_cast<float>(std::clamp(track.rival[which] + gain / unit - 0.5, 0.0, 3.0));
     if (track.rival[which] < 1.5f) continue;
@@ -340,11 +353,12 @@ void FullFilter::Recover(const Observation& observation) {
         if (std::find(tried_types.begin(), tried_types.end(), type) != tried_types.end()) continue;
         tried_types.push_back(type);
         --left;
-        const std::optional<Pose> former =
-            tracks_[k].status == PartStatus::kAbsent ? std::nullopt : std::optional<Pose>(camera_.X_TC().inverse() * tracks_[k].X_TP);
-        const auto found =
-            SearchPose(ShapeOf(static_cast<int>(k)).model, ShapeOf(static_cast<int>(k)).search_points, observation,
-                       owners_, static_cast<int>(k), bit_of_part_[k], blob, camera_.X_TC(), options_.search, former ? &*former : nullptr, scratch_);
+        const std::optional<Pose> former = tracks_[k].status == PartStatus::kAbsent
+                                               ? std::nullopt
+                                               : std::optional<Pose>(camera_.X_TC().inverse() * tracks_[k].X_TP);
+        const auto found = SearchPose(ShapeOf(static_cast<int>(k)).model, ShapeOf(static_cast<int>(k)).search_points,
+                                      observation, owners_, static_cast<int>(k), bit_of_part_[k], blob, camera_.X_TC(),
+                                      options_.search, former ? &*former : nullptr, scratch_);
         if (!found || found->score.log_likelihood <= best_gain || !Plausible(static_cast<int>(k), *found)) continue;
         best_gain = found->score.log_likelihood;
         best = *found;

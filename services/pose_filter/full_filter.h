@@ -25,9 +25,12 @@ struct FullFilterOptions {
   /// Of the likelihood, for a pose one reach (3 cm and more) or turn (0.4 rad) from the expected one; grows with the
   /// square, at most three times.
   double jump_cost = 0.03;
-  double rival_open = 0.35;  ///< share of the silhouette that must be open for a near symmetry to be tried
-  double rival_gain = 0.015;  ///< of the likelihood, by which it must be better for several frames
-  double least_jump_cost = 150;   ///< nats
+  double rival_open = 0.35;        ///< share of the silhouette that must be open for a near symmetry to be tried
+  double rival_gain = 0.015;       ///< of the likelihood, by which it must be better for several frames
+  double collision_cost = 0.2;     ///< of the likelihood, for a pose that lies in another part
+  double allowed_overlap = 0.004;  ///< m, measured poses of touching parts overlap
+  double full_overlap = 0.05;      ///< share of the surface inside the other part that costs all of it
+  double least_jump_cost = 150;    ///< nats
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
   TrackOptions track;
@@ -66,6 +69,8 @@ class FullFilter final : public PoseFilter {
   void BuildOwners(const Observation& observation, double dt);
   /// Tries poses that look almost the same as `best` and takes one over if it has been the better one for some frames.
   void TestRivals(int part, const Observation& observation, double dt, PoseCandidate& best);
+  /// Equation [5] as a cost (nats) instead of a factor: measured poses of parts in contact overlap a little.
+  double CollisionCost(int part, const PoseCandidate& candidate) const;
   void UpdateLinks(const FilterInput& input);
   std::optional<Pose> CarriedBy(int part, Matrix6& covariance) const;
   void UpdateTrack(int part, const Observation& observation, double dt);

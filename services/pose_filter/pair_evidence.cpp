@@ -65,6 +65,18 @@ void PairFinder::TestCandidates(PairEvidence& pair) const {
   }
 }
 
+double PairFinder::Overlap(int part_a, const Pose& X_TA, int part_b, const Pose& X_TB, double allowed) const {
+  const size_t type_a = static_cast<size_t>(task_.parts[part_a].type),
+               type_b = static_cast<size_t>(task_.parts[part_b].type);
+  const double reach = (extents_[type_a].diameter + extents_[type_b].diameter) / 2;
+  if ((X_TA * extents_[type_a].centre - X_TB * extents_[type_b].centre).norm() > reach) return 0;
+  const Eigen::Isometry3f X_BA = (X_TB.inverse() * X_TA).cast<float>();
+  int inside = 0;
+  for (const SurfacePoint& s : surface_[type_a])
+    inside += fields_[type_b].Distance(X_BA * s.p.cast<float>()) < -static_cast<float>(allowed);
+  return static_cast<double>(inside) / static_cast<double>(surface_[type_a].size());
+}
+
 std::vector<PairEvidence> PairFinder::Find(int64_t utime, const std::vector<Track>& tracks) {
   Moment now{utime, {}, {}};
   for (const Track& t : tracks) {

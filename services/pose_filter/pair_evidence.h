@@ -36,6 +36,9 @@ class PairFinder {
     return candidates_[static_cast<size_t>(task_.parts[part_a].type) * task_.types.size() + task_.parts[part_b].type];
   }
 
+  /// Share of a's surface that lies deeper than `allowed` (m) inside b, 0..1.
+  double Overlap(int part_a, const Pose& X_TA, int part_b, const Pose& X_TB, double allowed) const;
+
   /// @param tracks of this frame, in the order of Task::parts
   std::vector<PairEvidence> Find(int64_t utime, const std::vector<Track>& tracks);
   void Reset() { history_.clear(); }

@@ -65,7 +65,8 @@ PoseCandidate Polish(const PartModel& model, const Observation& observation, con
 
 std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& points, const Observation& observation,
                                         const OwnerMap& owners, int part, uint8_t class_bit, const Blob& blob,
-                                        const Pose& X_TC, const PoseSearchOptions& options, const Pose* former_X_CP, RefinementScratch& scratch) {
+                                        const Pose& X_TC, const PoseSearchOptions& options, const Pose* former_X_CP,
+                                        RefinementScratch& scratch) {
   if (blob.readings < 3) return std::nullopt;
   struct Ranked {
     float score;
@@ -136,7 +137,9 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
   }
   PoseCandidate best = *std::min_element(found.begin(), found.end(), likelier);
   if (former_X_CP) {
-    const auto turned = [&](const PoseCandidate& c) { return RotationError(model.symmetries, former_X_CP->linear(), c.X_CP.linear()); };
+    const auto turned = [&](const PoseCandidate& c) {
+      return RotationError(model.symmetries, former_X_CP->linear(), c.X_CP.linear());
+    };
     const double enough = options.almost_as_likely * best.score.log_likelihood;
     for (const PoseCandidate& c : found) {
       if (c.score.log_likelihood > enough && turned(c) < turned(best)) best = c;

@@ -12,14 +12,14 @@
 namespace coach {
 
 struct PoseSearchOptions {
-  int points = 110;              ///< of the cheap score
-  int refined = 10;              ///< best candidates that are refined
-  int polished = 3;              ///< best of those that are refined again, with their near symmetries
-  double least_agreement = 0.6;  ///< Score::agreement of an accepted pose
+  int points = 110;                ///< of the cheap score
+  int refined = 10;                ///< best candidates that are refined
+  int polished = 3;                ///< best of those that are refined again, with their near symmetries
+  double least_agreement = 0.6;    ///< Score::agreement of an accepted pose
   double almost_as_likely = 0.92;  ///< of the best log-likelihood: such poses are told apart by what was known before
-  double least_outline = 0.72;   ///< PoseCandidate::outline_support of an accepted pose
-  double largest_chi2 = 3.0;     ///< RefinementResult::depth_chi2 of an accepted pose
-  double least_visible = 0.2;    ///< share of the silhouette that must be open
+  double least_outline = 0.72;     ///< PoseCandidate::outline_support of an accepted pose
+  double largest_chi2 = 3.0;       ///< RefinementResult::depth_chi2 of an accepted pose
+  double least_visible = 0.2;      ///< share of the silhouette that must be open
 };
 
 struct PoseCandidate {
@@ -41,10 +41,12 @@ PoseCandidate Polish(const PartModel& model, const Observation& observation, con
                      uint8_t class_bit, const Pose& X_CP, const RefinementOptions& options, RefinementScratch& scratch);
 
 /// Best pose of a part at a blob, or empty if none is good enough.
-/// @param former_X_CP where it was last believed: of poses that are almost equally likely the one turned least from it wins; or null
+/// @param former_X_CP where it was last believed: of poses that are almost equally likely the one turned least from it
+/// wins; or null
 /// @param X_TC for resting orientations, which are tried beside the cover of SO(3)
 std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& points, const Observation& observation,
                                         const OwnerMap& owners, int part, uint8_t class_bit, const Blob& blob,
-                                        const Pose& X_TC, const PoseSearchOptions& options, const Pose* former_X_CP, RefinementScratch& scratch);
+                                        const Pose& X_TC, const PoseSearchOptions& options, const Pose* former_X_CP,
+                                        RefinementScratch& scratch);
 
 }  // namespace coach
