@@ -17,4 +17,11 @@ std::vector<std::string> TaskNames(const Station& station);
 /// never is one).
 std::filesystem::path TaskFileNamed(const Station& station, const std::string& name);
 
+/// Keeps the operator's choice in the station's state folder, for services that start later. Without a folder, or if it
+/// can't be written, nothing is kept.
+void RememberTask(const Station& station, const std::string& name);
+
+/// The task that was remembered; the station's own if none was or it is gone.
+std::filesystem::path RememberedTask(const Station& station);
+
 }  // namespace coach

@@ -284,21 +284,23 @@ std::shared_ptr<const TaskView> LoadTaskView(const std::filesystem::path& file, 
 std::string StateJson(const Lesson::Snapshot& snapshot, const std::vector<CommandOutbox::Entry>& commands,
                       const std::vector<Annotation>& annotations, const Choices& choices, const std::string& station,
                       int64_t now) {
-  return Dump(
-      {{"station", station},
-       {"now", now},
-       {"data_utime", snapshot.data_utime},
-       {"task",
-        {{"revision", snapshot.task_revision}, {"name", snapshot.task_name}, {"problem", snapshot.task_problem}}},
-       {"tasks", choices.tasks},
-       {"languages", choices.languages},
-       {"lesson", LessonJson(snapshot, now)},
-       {"robot", RobotJson(snapshot, now)},
-       {"acts", Mapped(snapshot.acts, ActJson)},
-       {"services", Mapped(snapshot.services, [&](const auto& s) { return ServiceJson(s, now); })},
-       {"events", Mapped(snapshot.events, EventJson)},
-       {"commands", Mapped(commands, CommandJson)},
-       {"annotations", Mapped(annotations, AnnotationJson)}});
+  return Dump({{"station", station},
+               {"now", now},
+               {"data_utime", snapshot.data_utime},
+               {"task",
+                {{"revision", snapshot.task_revision},
+                 {"name", snapshot.task_name},
+                 {"choice", snapshot.task_choice},
+                 {"problem", snapshot.task_problem}}},
+               {"tasks", choices.tasks},
+               {"languages", choices.languages},
+               {"lesson", LessonJson(snapshot, now)},
+               {"robot", RobotJson(snapshot, now)},
+               {"acts", Mapped(snapshot.acts, ActJson)},
+               {"services", Mapped(snapshot.services, [&](const auto& s) { return ServiceJson(s, now); })},
+               {"events", Mapped(snapshot.events, EventJson)},
+               {"commands", Mapped(commands, CommandJson)},
+               {"annotations", Mapped(annotations, AnnotationJson)}});
 }
 
 std::string ViewJson(const LiveView& view) {

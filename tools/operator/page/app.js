@@ -107,10 +107,15 @@ function showAll() {
   showQuestionnaire(toast);
   const rate = pictureRate();
   byId('camera-figures').textContent = rate > 0 ? t('fps', rate.toFixed(0)) : '';
-  if (rate === 0) {
-    byId('camera-note').hidden = false;
-    byId('camera-note').textContent = t(page.view && !page.pictures ? 'no_picture_remote' : 'no_picture');
-  }
+  showCameraNote(rate > 0);
+}
+
+/** Says why there is no picture; over the last one, if there was one. */
+function showCameraNote(alive) {
+  const note = byId('camera-note');
+  note.hidden = alive;
+  note.classList.toggle('over', Boolean(page.pictured));
+  note.textContent = t(page.pictured ? 'camera_silent' : page.view && !page.pictures ? 'no_picture_remote' : 'no_picture');
 }
 
 async function onState(state) {
@@ -127,6 +132,7 @@ async function onState(state) {
 function onView(view, jpeg) {
   page.view = view;
   page.pictures = Boolean(jpeg) || view.width === 0;
+  page.pictured ||= Boolean(jpeg);
   showView(view, jpeg, page.task);
   showTable(view, page.task, page.state && currentAct(page.state)?.point);
 }
