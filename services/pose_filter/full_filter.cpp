@@ -138,8 +138,8 @@ void FullFilter::Place(int part, const Observation& observation) {
   if (tracks_[part].status == PartStatus::kTracked && tracks_[part].bad == 0) owners_.Add(part, tiles_[part]);
 }
 
-Pose FullFilter::BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest,
-                              double dt) {
+std::optional<Pose> FullFilter::BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest,
+                                             const Pose& refined, double dt) {
   const Track& track = tracks_[part];
   const Shape& shape = ShapeOf(part);
   std::normal_distribution<double> normal;
@@ -147,8 +147,10 @@ Pose FullFilter::BestParticle(int part, const Observation& observation, const Po
   const double position = track.moving ? 0.006 + 0.6 * speed * dt + 0.3 * dt : 0.004;
   const double rotation = track.moving ? 0.06 + 0.6 * turn * dt + 1.0 * dt : 0.04;
   const Pose X_CT = camera_.X_TC().inverse();
-  Pose best = X_CT * predicted;
-  float best_score = ScorePoints(shape.particle_points, observation, owners_, part, bit_of_part_[part], best);
+  // Only a particle that is clearly better than what refinement found is worth refining itself.
+  const float refined_score = ScorePoints(shape.particle_points, observation, owners_, part, bit_of_part_[part], refined);
+  float best_score = refined_score + 0.05f * std::abs(refined_score);
+  std::optional<Pose> best;
   for (int i = 1; i < options_.particles; ++i) {
     Vector6 xi;
     const double wide = i % 4 == 0 ? 3.0 : 1.0;  // heavy tails
@@ -189,11 +191,14 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
     const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit, X_CP, options_.refinement, scratch_);
     if (posterior(c) > posterior(best)) best = c;
   };
-  const Pose particle = BestParticle(part, observation, predicted, track.X_TP, dt);
-  const Vector6 away = Difference(best.X_CP, particle);
-  if (best.score.agreement() < 0.9 || away.head<3>().norm() > 0.015) consider(particle);
-  if (track.moving) consider(X_CT * track.X_TP);
-  if (carried) consider(X_CT * *carried);
+  const Vector3 first = best.X_CP.translation();
+  if (const auto particle = BestParticle(part, observation, predicted, track.X_TP, best.X_CP, dt)) consider(*particle);
+  const Pose rest = X_CT * track.X_TP;
+  if (track.moving && (rest.translation() - first).norm() > 0.004) consider(rest);
+  if (carried) {
+    const Vector6 away = Difference(best.X_CP, expected);
+    if (away.head<3>().norm() > 0.003 || away.tail<3>().norm() > 0.05) consider(expected);
+  }
   TestRivals(part, observation, dt, best);
   const double in_image = InImageFraction(shape.model, observation.camera, best.X_CP);
   const double open = best.full_samples > 0 ? best.score.open() / best.full_samples : 0;
@@ -245,7 +250,9 @@ void FullFilter::TestRivals(int part, const Observation& observation, double dt,
   track.seen_for = track.missing() ? 0 : track.seen_for + dt;
   if (n == 0 || best.score.open() < options_.rival_open * best.full_samples || best.score.open() < 30) return;
   // In turn; more often while the part was seen for less than a second.
-  const int tests = std::min(static_cast<int>(n), track.seen_for < 1.0 ? 3 : 1);
+  const bool settled = track.seen_for > 1.0;
+  if (settled && (steps_ + part) % 4 != 0) return;
+  const int tests = std::min(static_cast<int>(n), settled ? 1 : 3);
   for (int i = 0; i < tests; ++i) {
     const size_t which = static_cast<size_t>(track.next_rival++) % n;
     Pose X = best.X_CP;
@@ -303,10 +310,11 @@ std::optional<Pose> FullFilter::CarriedBy(int part, Matrix6& covariance) const {
   for (const Link& link : links_) {
     if (!link.known || (link.part_a != part && link.part_b != part)) continue;
     const int partner = link.part_a == part ? link.part_b : link.part_a;
-    if (!updated_[partner]) continue;
+    if (!updated_[partner] && tracks_[partner].missing()) continue;
     const Pose X_PQ = link.part_a == part ? link.X_AB.inverse() : link.X_AB;  // this part in its partner's frame
     const Track& p = tracks_[partner];
-    const Matrix6 spread = ComposeCovariance(p.X_TP, p.covariance, X_PQ, play);
+    Matrix6 spread = ComposeCovariance(p.X_TP, p.covariance, X_PQ, play);
+    if (!updated_[partner]) spread += Matrix6::Identity() * 1e-4;  // its pose is that of the frame before
     if (spread.topLeftCorner<3, 3>().trace() >= best_spread) continue;
     best_spread = spread.topLeftCorner<3, 3>().trace();
     best = p.X_TP * X_PQ;

@@ -74,7 +74,8 @@ class FullFilter final : public PoseFilter {
   void UpdateLinks(const FilterInput& input);
   std::optional<Pose> CarriedBy(int part, Matrix6& covariance) const;
   void UpdateTrack(int part, const Observation& observation, double dt);
-  Pose BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest, double dt);
+  std::optional<Pose> BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest,
+                                   const Pose& refined, double dt);
   bool Plausible(int part, const PoseCandidate& found) const;
   void Recover(const Observation& observation);
   void Place(int part, const Observation& observation);

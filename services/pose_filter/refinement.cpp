@@ -274,7 +274,7 @@ RefinementResult Refine(const PartModel& model, const Observation& observation, 
     const double length = step.head<3>().norm() + reach * step.tail<3>().norm();
     if (length > 0.05) step *= 0.05 / length;
     result.X_CP = Perturb(result.X_CP, step);
-    if (length < 5e-5 && blend > 0.5) break;
+    if (length < 2e-4 && k > 0) break;
   }
   return result;
 }
