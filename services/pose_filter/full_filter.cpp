@@ -24,7 +24,6 @@ FullFilter::FullFilter(const Task& task, const FullFilterOptions& options, uint6
     auto shape = std::make_unique<Shape>();
     shape->model = MakePartModel(type);
     shape->search_points = MakePointSet(shape->model, options.search.points);
-    shape->particle_points = MakePointSet(shape->model, options.particle_points);
     shapes_.push_back(std::move(shape));
   }
   for (const Part& part : task_.parts) {
@@ -138,8 +137,8 @@ void FullFilter::Place(int part, const Observation& observation) {
   if (tracks_[part].status == PartStatus::kTracked && tracks_[part].bad == 0) owners_.Add(part, tiles_[part]);
 }
 
-std::optional<Pose> FullFilter::BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest,
-                                             const Pose& refined, double dt) {
+std::optional<Pose> FullFilter::BestParticle(int part, const Observation& observation, const Pose& predicted,
+                                             const Pose& rest, const Pose& refined, double dt) {
   const Track& track = tracks_[part];
   const Shape& shape = ShapeOf(part);
   std::normal_distribution<double> normal;
@@ -148,7 +147,8 @@ std::optional<Pose> FullFilter::BestParticle(int part, const Observation& observ
   const double rotation = track.moving ? 0.06 + 0.6 * turn * dt + 1.0 * dt : 0.04;
   const Pose X_CT = camera_.X_TC().inverse();
   // Only a particle that is clearly better than what refinement found is worth refining itself.
-  const float refined_score = ScorePoints(shape.particle_points, observation, owners_, part, bit_of_part_[part], refined);
+  SelectVisible(shape.model, refined, scratch_.visible, options_.particle_points, particle_points_);
+  const float refined_score = ScoreVisible(particle_points_, observation, owners_, part, bit_of_part_[part], refined);
   float best_score = refined_score + 0.05f * std::abs(refined_score);
   std::optional<Pose> best;
   for (int i = 1; i < options_.particles; ++i) {
@@ -156,7 +156,7 @@ std::optional<Pose> FullFilter::BestParticle(int part, const Observation& observ
     const double wide = i % 4 == 0 ? 3.0 : 1.0;  // heavy tails
     for (int d = 0; d < 6; ++d) xi[d] = normal(rng_) * wide * (d < 3 ? position : rotation);
     const Pose X = X_CT * Perturb(i % 2 ? predicted : rest, xi);
-    const float score = ScorePoints(shape.particle_points, observation, owners_, part, bit_of_part_[part], X);
+    const float score = ScoreVisible(particle_points_, observation, owners_, part, bit_of_part_[part], X);
     if (score > best_score) {
       best_score = score;
       best = X;

@@ -17,7 +17,7 @@ namespace coach {
 
 struct FullFilterOptions {
   int particles = 200;            ///< a part
-  int particle_points = 60;       ///< surface points a particle is scored on (about half of them face the camera)
+  int particle_points = 40;       ///< surface points a particle is scored on
   int searches = 3;               ///< searches from nothing a frame, at most (all of them in the first frames)
   double link_probability = 0.6;  ///< from here on a believed connection links two parts
   double link_position = 0.0015;  ///< m, play of a link
@@ -53,7 +53,7 @@ class FullFilter final : public PoseFilter {
  private:
   struct Shape {
     PartModel model;
-    PointSet search_points, particle_points;
+    PointSet search_points;
   };
   /// A believed connection as a rigid link.
   struct Link {
@@ -107,6 +107,7 @@ class FullFilter final : public PoseFilter {
   ForeignFinder foreign_;
   PairFinder pairs_;
   RefinementScratch scratch_;
+  VisiblePoints particle_points_;
 };
 
 }  // namespace coach

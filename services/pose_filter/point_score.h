@@ -23,4 +23,15 @@ PointSet MakePointSet(const PartModel& model, int points);
 float ScorePoints(const PointSet& points, const Observation& observation, const OwnerMap& owners, int part,
                   uint8_t class_bit, const Pose& X_CP);
 
+/// The same for particles close to one pose: only the points that are seen there take part, with the weights they have
+/// there.
+struct VisiblePoints {
+  std::vector<float> x, y, z, weight;
+};
+/// @param visible indices into model.surface that are seen at X_CP; at most `most` are taken.
+void SelectVisible(const PartModel& model, const Pose& X_CP, const std::vector<int>& visible, int most,
+                   VisiblePoints& points);
+float ScoreVisible(const VisiblePoints& points, const Observation& observation, const OwnerMap& owners, int part,
+                   uint8_t class_bit, const Pose& X_CP);
+
 }  // namespace coach

@@ -6,6 +6,9 @@
 namespace coach {
 namespace {
 
+/// Nearest integer; pixels are not far below zero.
+int Nearest(double v) { return static_cast<int>(v + 4096.5) - 4096; }
+
 using Row = Eigen::Matrix<double, 1, 6>;
 
 /// Sums of the normal equations.
@@ -82,8 +85,8 @@ void FindVisible(const PartModel& model, const CameraModel& camera, const Pose& 
   for (int i = 0; i < n; i += stride) {
     const Vector3 p = X_CP * model.surface[i].p;
     if (p.z() < 0.05 || (X_CP.linear() * model.surface[i].n).dot(p) > -0.12 * p.norm()) continue;
-    const int x = static_cast<int>(std::lround(camera.fx * p.x() / p.z() + camera.cx));
-    const int y = static_cast<int>(std::lround(camera.fy * p.y() / p.z() + camera.cy));
+    const int x = Nearest(camera.fx * p.x() / p.z() + camera.cx);
+    const int y = Nearest(camera.fy * p.y() / p.z() + camera.cy);
     const float d = tile.AtPixel(x, y);
     if (d == 0 || p.z() > d + 0.006 || !CoveredAround(tile, x, y, tile.step)) continue;
     visible.push_back(i);
@@ -97,8 +100,8 @@ void AddDepth(const PartModel& model, const Observation& observation, const Owne
   for (const int i : visible) {
     const Vector3 arm = X_CP.linear() * model.surface[i].p;
     const Vector3 p = arm + X_CP.translation();
-    const int x = static_cast<int>(std::lround(camera.fx * p.x() / p.z() + camera.cx));
-    const int y = static_cast<int>(std::lround(camera.fy * p.y() / p.z() + camera.cy));
+    const int x = Nearest(camera.fx * p.x() / p.z() + camera.cx);
+    const int y = Nearest(camera.fy * p.y() / p.z() + camera.cy);
     if (!observation.Inside(x, y)) continue;
     const double z = observation.Depth(x, y);
     if (z == 0) continue;
@@ -147,8 +150,7 @@ void AddContour(const Observation& observation, const OwnerMap& owners, int part
     const double u = camera.fx * p.x() / p.z() + camera.cx, v = camera.fy * p.y() / p.z() + camera.cy;
     int unknown = 0;
     for (int s = -L; s <= L; ++s) {
-      const int x = static_cast<int>(std::lround(u + s * o.normal.x())),
-                y = static_cast<int>(std::lround(v + s * o.normal.y()));
+      const int x = Nearest(u + s * o.normal.x()), y = Nearest(v + s * o.normal.y());
       g[s + L] = Inside(observation, owners, part, class_bit, x, y, p.z());
       unknown += g[s + L] == 0;
     }
@@ -216,8 +218,8 @@ void FindOutline(const PartModel& model, const CameraModel& camera, const Pose& 
       const Eigen::Vector2d in = at - reach * normal, out = at + reach * normal;
       // 1 / z is linear along the edge's image.
       const double w = (1 - t) / pa.z() + t / pb.z(), z = 1 / w;
-      if (tile.AtPixel(static_cast<int>(std::lround(out.x())), static_cast<int>(std::lround(out.y()))) > 0) continue;
-      const float d = tile.AtPixel(static_cast<int>(std::lround(in.x())), static_cast<int>(std::lround(in.y())));
+      if (tile.AtPixel(Nearest(out.x()), Nearest(out.y())) > 0) continue;
+      const float d = tile.AtPixel(Nearest(in.x()), Nearest(in.y()));
       if (d == 0 || z > d + 0.02) continue;
       const double s = t / pb.z() / w;
       outline.push_back({model.mesh.vertices[e.a] + s * (model.mesh.vertices[e.b] - model.mesh.vertices[e.a]), normal});
@@ -250,8 +252,7 @@ RefinementResult Refine(const PartModel& model, const Observation& observation, 
       AddDepth(model, observation, owners, part, class_bit, result.X_CP, scratch.visible, options.first_gate,
                options.last_gate_sigmas, blend, depth);
     if (observation.class_map) {
-      const int L =
-          static_cast<int>(std::lround((1 - blend) * options.first_half_length + blend * options.last_half_length));
+      const int L = Nearest((1 - blend) * options.first_half_length + blend * options.last_half_length);
       AddContour(observation, owners, part, class_bit, result.X_CP, scratch.outline, L, contour);
     }
     result.depth_used = depth.used;
