@@ -22,9 +22,9 @@ struct Plot {
   std::string title, x_label, y_label;
   double y_low = 0.1, y_high = 100;  ///< what lies outside is drawn on the border
   bool log_y = true;
-  std::vector<PlotSeries> series;
-  std::vector<PlotBand> bands;
-  std::string bands_legend;  ///< what the bands mean
+  std::vector<PlotSeries> series{};
+  std::vector<PlotBand> bands{};
+  std::string bands_legend{};  ///< what the bands mean
 };
 
 std::string ToSvg(const Plot& plot);
