@@ -6,14 +6,33 @@
 #include "common/bus/image_messages.h"
 #include "common/bus/messages.h"
 #include "common/bus/service_main.h"
+#include "common/bus/task_follower.h"
 #include "services/detector/hsv_detector.h"
 
 namespace coach {
 namespace {
 
+HsvDetectorOptions ReadOptions(const YamlNode& section) {
+  HsvDetectorOptions options;
+  options.min_area = static_cast<int>(section.GetInRange("min_area", options.min_area, 1, 100'000));
+  options.opening = static_cast<int>(section.GetInRange("opening", options.opening, 0, 10));
+  options.closing = static_cast<int>(section.GetInRange("closing", options.closing, 0, 10));
+  if (const auto background = section.Find("background")) {
+    options.background =
+        Chromaticity{background->GetInRange("blue_green", 0, -3, 3), background->GetInRange("red_green", 0, -3, 3)};
+    background->RejectUnknownKeys();
+  }
+  section.RejectUnknownKeys();
+  return options;
+}
+
 class DetectorService {
  public:
-  DetectorService(const NodeOptions& options, const Task& task) : detector_(task), node_(options) {
+  DetectorService(const NodeOptions& node, const Station& station, const Task& task, const HsvDetectorOptions& options)
+      : detector_(std::make_unique<HsvDetector>(task, options)),
+        node_(node),
+        follower_(node_, station, task.sha256,
+                  [this, options](const Task& other) { detector_ = std::make_unique<HsvDetector>(other, options); }) {
     // All of them: the joiner keeps the newest frame that has both images.
     node_.Subscribe<color_image_t>([this](const color_image_t& m) {
       node_.Received();
@@ -44,29 +63,31 @@ class DetectorService {
   Detections Detect(const color_image_t& colour, const std::unique_ptr<depth_image_t>& depth) {
     const Frame frame = FromMessage(colour);
     const Frame depth_frame = depth ? FromMessage(*depth) : Frame();
-    Detections detections = detector_.Detect(frame.colour, depth_frame.depth, depth_frame.metres_per_unit);
+    Detections detections = detector_->Detect(frame.colour, depth_frame.depth, depth_frame.metres_per_unit);
     detections.utime = frame.utime;
     detections.received_utime = frame.received_utime;
     detections.sequence = frame.sequence;
     return detections;
   }
 
-  HsvDetector detector_;
+  std::unique_ptr<HsvDetector> detector_;
   FrameJoiner<color_image_t, depth_image_t> frames_;
   int64_t dropped_seen_ = 0;
   Node node_;
+  TaskFollower follower_;
 };
 
 }  // namespace
 }  // namespace coach
 
 int main(int argc, char** argv) {
-  return coach::ServiceMain(argc, argv, "detector", "Finds regions of the task's colours in every frame.", nullptr,
-                            [](coach::ServiceContext& context) {
-                              context.station.Section("detector").RejectUnknownKeys();
-                              if (context.station.task.empty())
-                                throw coach::ConfigurationError("no task: give task in the station file, or --task");
-                              context.node.expects_frames = true;
-                              coach::DetectorService(context.node, coach::LoadTask(context.station.task)).Run();
-                            });
+  return coach::ServiceMain(
+      argc, argv, "detector", "Finds regions of the task's colours in every frame.", nullptr,
+      [](coach::ServiceContext& context) {
+        const coach::Station& station = context.station;
+        const coach::HsvDetectorOptions options = coach::ReadOptions(station.Section("detector"));
+        if (station.task.empty()) throw coach::ConfigurationError("no task: give task in the station file, or --task");
+        context.node.expects_frames = true;
+        coach::DetectorService(context.node, station, coach::LoadTask(station.task), options).Run();
+      });
 }

@@ -8,18 +8,10 @@
 
 namespace coach {
 
-PoseFilterService::PoseFilterService(const NodeOptions& node, const Task& task, std::unique_ptr<PoseFilter> filter,
+PoseFilterService::PoseFilterService(const NodeOptions& node, const Task& task, MakeFilter make_filter,
                                      const PoseFilterServiceOptions& options)
-    : filter_(std::move(filter)),
-      options_(options),
-      task_sha256_(task.sha256),
-      num_parts_(task.parts.size()),
-      node_(node) {
-  if (!options_.state_file.empty()) state_ = ReadState(options_.state_file, task_sha256_, num_parts_);
-  if (state_) {
-    spdlog::info("going on from the poses in {}", options_.state_file.string());
-    filter_->Suggest(state_->X_CP);
-  }
+    : make_filter_(std::move(make_filter)), options_(options), node_(node) {
+  SetTask(task);
   // All of them: the joiner keeps the newest frame that is complete.
   node_.Subscribe<depth_image_t>([this](const depth_image_t& m) {
     node_.Received();
@@ -34,6 +26,17 @@ PoseFilterService::PoseFilterService(const NodeOptions& node, const Task& task, 
     belief_.reset();
     filter_->Reset();
   });
+}
+
+void PoseFilterService::SetTask(const Task& task) {
+  filter_ = make_filter_(task);
+  task_sha256_ = task.sha256;
+  belief_.reset();
+  state_.reset();
+  if (!options_.state_file.empty()) state_ = ReadState(options_.state_file, task.sha256, task.parts.size());
+  if (!state_) return;
+  spdlog::info("going on from the poses in {}", options_.state_file.string());
+  filter_->Suggest(state_->X_CP);
 }
 
 void PoseFilterService::Run() {

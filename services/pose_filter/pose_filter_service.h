@@ -22,8 +22,12 @@ struct PoseFilterServiceOptions {
 /// is (FrameJoiner).
 class PoseFilterService {
  public:
-  PoseFilterService(const NodeOptions& node, const Task& task, std::unique_ptr<PoseFilter> filter,
+  using MakeFilter = std::function<std::unique_ptr<PoseFilter>(const Task&)>;
+
+  PoseFilterService(const NodeOptions& node, const Task& task, MakeFilter make_filter,
                     const PoseFilterServiceOptions& options);
+  /// Begins anew with another task.
+  void SetTask(const Task& task);
   void Run();
   Node& node() { return node_; }
 
@@ -33,10 +37,10 @@ class PoseFilterService {
   void BeginAgain();
   void KeepState(const PartPoses& poses);
 
+  MakeFilter make_filter_;
   std::unique_ptr<PoseFilter> filter_;
   PoseFilterServiceOptions options_;
   std::string task_sha256_;
-  size_t num_parts_;
   FrameJoiner<depth_image_t, detections_t> frames_;
   int64_t dropped_seen_ = 0;
   std::optional<ConnectionBelief> belief_;

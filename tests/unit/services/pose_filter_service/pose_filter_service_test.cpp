@@ -70,7 +70,7 @@ class PoseFilterServiceTest : public testing::Test {
     node.url = "file://" + in_ + "?speed=0";
     node.output_url = "file://" + out_ + "?mode=w";
     std::vector<std::string> calls;
-    PoseFilterService service(node, task_, std::make_unique<RecordingFilter>(calls), {});
+    PoseFilterService service(node, task_, [&](const Task&) { return std::make_unique<RecordingFilter>(calls); }, {});
     service.Run();
     health_ = service.node().Health();
     return calls;
