@@ -8,6 +8,7 @@ namespace coach {
 namespace {
 
 constexpr int64_t kLongestGap = 200000;   // us without evidence after which a decision has to mature anew
+constexpr double kSamePlace = 0.003;      // m
 constexpr double kReportedBelief = 0.05;  // connections less probable than this are not told to the filter
 
 AssemblyBeliefOptions BeliefOptions(const AssemblyReasonerOptions& options) {
@@ -357,6 +358,40 @@ double AssemblyReasoner::Probability(int connection, int part_a, int part_b) con
       return impl_->belief.Probability(pair, static_cast<int>(k));
   }
   return 0;
+}
+
+double AssemblyReasoner::ProbabilityOf(int part_a, int part_b, int label) const {
+  return impl_->belief.Probability(std::minmax(part_a, part_b), label);
+}
+
+double AssemblyReasoner::BestRight(int part_a, int part_b, int label) const {
+  const PairKey pair = std::minmax(part_a, part_b);
+  const auto& classes = impl_->Classes(pair);
+  double best = 0;
+  for (size_t k = 0; k < classes.size(); ++k) {
+    const int other = static_cast<int>(k);
+    if (other != label && !classes[k].connections.empty())
+      best = std::max(best, impl_->belief.Probability(pair, other));
+  }
+  return best;
+}
+
+bool AssemblyReasoner::IsTurned(const BelievedJoint& joint) const {
+  if (joint.label < 0) return false;
+  const auto& classes = impl_->Classes({joint.part_a, joint.part_b});
+  const auto turn = [&](const ContactClass& right, const ContactTemplate& wrong) {
+    // Turned about its long axis the part meets the other at the same place.
+    const Vector3 p = right.templates[0].X_AB.translation(), q = wrong.X_AB.translation();
+    return std::abs(p.x() - q.x()) < kSamePlace && std::abs(std::abs(p.y()) - std::abs(q.y())) < kSamePlace &&
+           std::abs(std::abs(p.z()) - std::abs(q.z())) < kSamePlace;
+  };
+  for (const ContactClass& right : classes) {
+    if (right.connections.empty() || &right == &classes[joint.label]) continue;
+    for (const ContactTemplate& wrong : classes[joint.label].templates) {
+      if (turn(right, wrong)) return true;
+    }
+  }
+  return false;
 }
 
 AssemblyMemory AssemblyReasoner::Save() const { return {impl_->joints, impl_->placement.variant}; }

@@ -86,6 +86,13 @@ class AssemblyReasoner {
   /// Probability that the two parts are joined as in this connection (both orders are tried).
   double Probability(int connection, int part_a, int part_b) const;
 
+  /// Probability of a label of the pair.
+  double ProbabilityOf(int part_a, int part_b, int label) const;
+  /// Probability of the best connection of the task between the two parts other than `label`.
+  double BestRight(int part_a, int part_b, int label) const;
+  /// Whether the wrong joint is between the right kinds of parts for a step, so that turning one over may mend it.
+  bool IsTurned(const BelievedJoint& joint) const;
+
   AssemblyMemory Save() const;
   /// @throws std::invalid_argument if the memory does not fit the task.
   void Restore(const AssemblyMemory& memory);
