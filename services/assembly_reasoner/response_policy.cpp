@@ -1,6 +1,7 @@
 #include "services/assembly_reasoner/response_policy.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace coach {
@@ -10,9 +11,7 @@ constexpr double kStraight = 15 * std::numbers::pi / 180;  // rad, below this tw
 
 double Seconds(int64_t from, int64_t to) { return static_cast<double>(to - from) * 1e-6; }
 
-std::string CorrectionName(const BelievedJoint& joint) {
-  return std::to_string(joint.label) + " " + std::to_string(joint.part_a) + " " + std::to_string(joint.part_b);
-}
+JointName NameOf(const BelievedJoint& joint) { return {joint.label, joint.part_a, joint.part_b}; }
 
 bool IsIdle(const std::string& key) { return key.rfind("idle_", 0) == 0; }
 bool IsWrong(const std::string& key) { return key.rfind("wrong", 0) == 0; }
@@ -169,7 +168,7 @@ const BelievedJoint* ResponsePolicy::WorstWrong(const LessonView& view) const {
   int least = 1 << 20;
   for (const BelievedJoint& j : view.reasoner->joints()) {
     if (j.connection >= 0) continue;
-    const auto said = corrections_said_.find(CorrectionName(j));
+    const auto said = corrections_said_.find(NameOf(j));
     const int times = said == corrections_said_.end() ? 0 : said->second;
     if (times < least) {
       worst = &j;
@@ -186,7 +185,7 @@ void ResponsePolicy::Correct(const LessonView& view) {
     corrections_.clear();
     return;
   }
-  const std::string name = CorrectionName(*wrong);
+  const JointName name = NameOf(*wrong);
   const auto& belief = *view.reasoner;
   const double p = belief.ProbabilityOf(wrong->part_a, wrong->part_b, wrong->label);
   const double right = belief.BestRight(wrong->part_a, wrong->part_b, wrong->label);
@@ -280,9 +279,15 @@ void ResponsePolicy::Advance(const LessonView& view) {
 }
 
 std::string ResponsePolicy::IdleKey(int level, const LessonView& view) const {
-  if (level != 3) return "idle_" + std::to_string(level);
+  constexpr std::array<const char*, 4> kKeys{"idle_1", "idle_2", "idle_3", "idle_4"};
+  const std::string key = kKeys[static_cast<size_t>(std::clamp(level, 1, 4) - 1)];
+  if (level != 3) return key;
   const Connection& c = view.reasoner->task().connections[step_];
-  return RotationAngle(c.X_AB.linear()) < kStraight ? "idle_3_straight" : "idle_3";
+  const Vector3 turn = LogRotation(c.X_AB.linear());
+  if (turn.norm() < kStraight) return "idle_3_straight";
+  // An angle is a help where the parts lie flat; what sits otherwise is shown as a whole.
+  const bool flat = c.freedom.empty() && std::abs(turn.z()) > 0.94 * turn.norm();
+  return flat ? key : kKeys[3];
 }
 
 void ResponsePolicy::Hint(const LessonView& view) {
@@ -357,9 +362,7 @@ void ResponsePolicy::Spoken(const Utterance& u, int64_t now) {
   if (IsWrong(u.key)) {
     last_correction_ = {u.part_a, u.part_b, now};
     for (auto& [name, correction] : corrections_) {
-      const std::string parts =
-          " " + std::to_string(std::min(u.part_a, u.part_b)) + " " + std::to_string(std::max(u.part_a, u.part_b));
-      if (!name.ends_with(parts)) continue;
+      if (std::minmax(name[1], name[2]) != std::minmax(u.part_a, u.part_b)) continue;
       correction.last = now;
       ++corrections_said_[name];
     }

@@ -3,6 +3,7 @@
 // the data.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -44,11 +45,14 @@ struct LessonView {
   std::vector<int> skipped;             ///< connections that the operator skips
 };
 
+/// Label and parts of a joint.
+using JointName = std::array<int, 3>;
+
 /// What has to survive a restart.
 struct PolicyMemory {
   Phase phase = Phase::kIntroduction;
   int idle_level = 0;
-  std::map<std::string, int> corrections;  ///< said so far, by "name part part"
+  std::map<JointName, int> corrections;  ///< times each was said
   int repairs = 0;
 };
 
@@ -112,8 +116,8 @@ class ResponsePolicy {
   int64_t now_ = 0, last_movement_ = 0, quiet_ = 0, last_step_ = 0, hidden_since_ = 0, last_lost_ = 0, doubt_since_ = 0,
           last_hedge_ = 0;
   std::map<std::pair<int, int>, int64_t> to_praise_;  // pair -> us when it was decided
-  std::map<std::string, Correction> corrections_;
-  std::map<std::string, int> corrections_said_;
+  std::map<JointName, Correction> corrections_;
+  std::map<JointName, int> corrections_said_;
   struct Said {
     int part_a = -1, part_b = -1;
     int64_t at = 0;

@@ -1,0 +1,110 @@
+// A lesson: tasks one after the other, the reasoner that watches, the policy that answers, the operator who overrides.
+// Pure: poses, operator commands and robot statuses in; state, belief, events and robot commands out. Time is that of
+// the poses.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "common/assembly/robot_act.h"
+#include "services/assembly_reasoner/assembly_reasoner.h"
+#include "services/assembly_reasoner/phrase_book.h"
+#include "services/assembly_reasoner/response_policy.h"
+#include "services/assembly_reasoner/speech_queue.h"
+
+namespace coach {
+
+struct LessonOptions {
+  AssemblyReasonerOptions reasoner;
+  ResponseOptions response;
+  SpeechOptions speech;
+  std::string language = "en";
+  bool group = false;            ///< a group of children is spoken to, not one
+  bool start_by_itself = false;  ///< the lesson begins with the first poses, not with the operator's word
+  int no_repeat = 3;             ///< of the last wordings of a kind none is chosen again
+  double validity = 8;           ///< s for which a command to the robot holds
+  uint64_t seed = 1;             ///< of the choice of wordings
+};
+
+struct LessonOutput {
+  bool accepted = true;  ///< false: the poses were refused
+  std::string refused;   ///< why
+  AssemblyState state;
+  ConnectionBelief belief;
+  std::vector<GuidanceEvent> events;
+  std::vector<RobotCommand> commands;  ///< sent_utime and hmac are left to the sender
+};
+
+/// What has to survive a restart.
+struct LessonMemory {
+  int64_t session = 0;
+  std::string task, language;
+  bool begun = false;
+  AssemblyMemory assembly;
+  PolicyMemory policy;
+  std::vector<int> skipped;
+  int64_t last_event = 0, last_command = 0;
+};
+
+class Lesson {
+ public:
+  /// @param tasks at least one; the first is chosen
+  /// @param books by language; at least that of the options
+  /// @throws std::invalid_argument if either is missing
+  Lesson(std::vector<Task> tasks, std::map<std::string, PhraseBook> books, const LessonOptions& options,
+         std::string station);
+
+  LessonOutput Step(const PartPoses& poses);
+  /// What the operator wants is done at once or refused, with an event either way.
+  LessonOutput Handle(const OperatorCommand& command);
+  void Handle(const RobotStatus& status);
+
+  const Task& task() const { return tasks_[chosen_]; }
+  int64_t session() const { return session_; }
+
+  LessonMemory Save() const;
+  /// @throws std::invalid_argument if it does not fit the tasks
+  void Restore(const LessonMemory& memory);
+
+ private:
+  void Choose(size_t task);
+  void Begin(int64_t session);
+  LessonView View(std::vector<ConnectionEvent> events) const;
+  void Speak(LessonOutput& out);
+  void Say(const Utterance& utterance, LessonOutput& out);
+  RobotCommand Command(const Utterance& utterance);
+  void Aim(const Utterance& utterance, RobotCommand& command) const;
+  std::string Words(const Utterance& utterance, RobotCommand& command);
+  std::string Obey(const OperatorCommand& command, LessonOutput& out);
+  std::string Mark(const std::string& name, bool made, LessonOutput& out);
+  void Tell(const std::vector<ConnectionEvent>& events, LessonOutput& out);
+  void Emit(GuidanceEvent event, LessonOutput& out);
+  void Finish(LessonOutput& out);
+
+  std::vector<Task> tasks_;
+  std::map<std::string, PhraseBook> books_;
+  LessonOptions options_;
+  std::string station_, language_;
+  size_t chosen_ = 0;
+  std::unique_ptr<AssemblyReasoner> reasoner_;
+  SpeechQueue speech_;
+  ResponsePolicy policy_;
+  bool begun_ = false;
+  int64_t session_ = 0, last_event_ = 0, last_command_ = 0, help_requests_ = -1;
+  std::vector<int> skipped_;
+  std::optional<PartPoses> poses_;
+  RobotCommand last_said_;
+  std::map<std::string, std::deque<int>> wordings_;  // last ones by kind
+  std::deque<GuidanceEvent> recent_;
+  std::mt19937_64 random_;
+  AssemblyState state_;
+};
+
+}  // namespace coach
