@@ -32,13 +32,35 @@ DistanceField::DistanceField(const TriangleMesh& mesh, const DistanceFieldOption
   }
 }
 
-float DistanceField::Distance(const Eigen::Vector3f& p_P) const { return At(p_P).distance; }
+float DistanceField::Distance(const Eigen::Vector3f& p_P) const {
+  // As At, without the gradient: this is the inner loop of overlap tests.
+  const float scale = 1 / voxel_;
+  std::array<int, 3> cell;
+  std::array<float, 3> f;
+  float squared_outside = 0;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const float at = (p_P[i] - origin_[i]) * scale;
+    const float inside = std::min(std::max(0.0F, at), static_cast<float>(size_[axis] - 1));  // NaN: 0
+    cell[axis] = std::min(static_cast<int>(inside), size_[axis] - 2);
+    f[axis] = inside - static_cast<float>(cell[axis]);
+    squared_outside += (at - inside) * (at - inside);
+  }
+  const auto nx = static_cast<size_t>(size_[0]), nxy = nx * static_cast<size_t>(size_[1]);
+  const float* s = samples_.data() + static_cast<size_t>(cell[0]) + nx * static_cast<size_t>(cell[1]) +
+                   nxy * static_cast<size_t>(cell[2]);
+  const auto mix = [](float a, float b, float t) { return a + t * (b - a); };
+  const float y0 = mix(mix(s[0], s[1], f[0]), mix(s[nx], s[nx + 1], f[0]), f[1]);
+  const float y1 = mix(mix(s[nxy], s[nxy + 1], f[0]), mix(s[nxy + nx], s[nxy + nx + 1], f[0]), f[1]);
+  const float distance = mix(y0, y1, f[2]);
+  return squared_outside > 0 ? distance + voxel_ * std::sqrt(squared_outside) : distance;
+}
 
 DistanceField::Value DistanceField::At(const Eigen::Vector3f& p_P) const {
   const Eigen::Vector3f last(static_cast<float>(size_[0] - 1), static_cast<float>(size_[1] - 1),
                              static_cast<float>(size_[2] - 1));
   const Eigen::Vector3f at = (p_P - origin_) / voxel_;
-  const Eigen::Vector3f inside = at.cwiseMax(0).cwiseMin(last);
+  const Eigen::Vector3f inside = (at.array() > 0).select(at, 0.0F).cwiseMin(last);  // NaN: 0
   const Eigen::Vector3f cell = inside.array().floor().matrix().cwiseMin(last - Eigen::Vector3f::Ones());
   const Eigen::Vector3f f = inside - cell;
   const auto nx = static_cast<size_t>(size_[0]), nxy = nx * static_cast<size_t>(size_[1]);

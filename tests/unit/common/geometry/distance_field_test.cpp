@@ -72,6 +72,19 @@ TEST(DistanceField, OutsideOfTheGridDistanceGoesOn) {
   }
 }
 
+TEST(DistanceField, BothQueriesAgree) {
+  const DistanceField field(TorusMesh(0.04, 0.012, 40, 20));
+  std::mt19937_64 generator(7);
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3f p = RandomPoint(generator, {0.1F, 0.1F, 0.06F});
+    EXPECT_NEAR(field.Distance(p), field.At(p).distance, 1e-6);
+  }
+  // A point that is none is looked up inside of the grid.
+  const Eigen::Vector3f nowhere(std::nanf(""), 0, 0);
+  EXPECT_GT(field.Distance(nowhere), -1);
+  EXPECT_GT(field.At(nowhere).distance, -1);
+}
+
 TEST(DistanceField, KeepsToItsMemory) {
   DistanceFieldOptions options;
   options.max_samples = 5000;
