@@ -86,8 +86,10 @@ PartPoses FullFilter::Step(const FilterInput& input) {
   });
   UpdateLinks(input);
   updated_.assign(tracks_.size(), false);
+  TrySuggestions(observation);
   for (const int part : order) {
     Track& track = tracks_[part];
+    if (updated_[part]) continue;
     if (track.status == PartStatus::kLost) {
       Matrix6 covariance;
       if (const auto carried = CarriedBy(part, covariance)) {
@@ -103,9 +105,22 @@ PartPoses FullFilter::Step(const FilterInput& input) {
   }
   Recover(observation);
   foreign_.Find(observation, owners_, camera_.X_TC(), area_, dt);
-  suggested_.clear();
   ++steps_;
   return Output(input);
+}
+
+void FullFilter::TrySuggestions(const Observation& observation) {
+  for (size_t k = 0; k < suggested_.size(); ++k) {
+    const int part = static_cast<int>(k);
+    if (tracks_[k].alive()) continue;
+    const PoseCandidate c = Polish(ShapeOf(part).model, observation, owners_, part, bit_of_part_[k], suggested_[k],
+                                   options_.refinement, scratch_);
+    if (!Acceptable(c, options_.search)) continue;
+    Restart(c, camera_.X_TC(), tracks_[k]);
+    updated_[k] = true;
+    Place(part, observation);
+  }
+  suggested_.clear();
 }
 
 void FullFilter::LocateCamera(const Observation& observation) {

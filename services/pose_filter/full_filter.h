@@ -65,6 +65,7 @@ class FullFilter final : public PoseFilter {
     return *shapes_[static_cast<size_t>(task_.parts[static_cast<size_t>(part)].type)];
   }
 
+  void TrySuggestions(const Observation& observation);
   void LocateCamera(const Observation& observation);
   void BuildOwners(const Observation& observation, double dt);
   /// Tries poses that look almost the same as `best` and takes one over if it has been the better one for some frames.

@@ -18,6 +18,7 @@ PoseFilterService::PoseFilterService(const NodeOptions& node, const Task& task, 
     frames_.Add(m);
   });
   node_.Subscribe<detections_t>([this](const detections_t& m) { frames_.Add(m); });
+  node_.Subscribe<color_image_t>([this](const color_image_t& m) { frames_.Add(m); });
   node_.Subscribe<connection_belief_t>([this](const connection_belief_t& m) { belief_ = FromMessage(m); });
   node_.OnOperatorCommand([this](const OperatorCommand& command) {
     if (command.kind != OperatorKind::kResetTracker) return;
@@ -50,7 +51,7 @@ void PoseFilterService::Step() {
   if (!joined) return;
   if (joined->restarted) BeginAgain();
   try {
-    Answer(joined->primary, std::get<0>(joined->companions));
+    Answer(joined->primary, std::get<0>(joined->companions).get(), std::get<1>(joined->companions).get());
   } catch (...) {
     node_.Dropped();
     throw;
@@ -66,7 +67,8 @@ void PoseFilterService::BeginAgain() {
   if (state_) filter_->Suggest(state_->X_CP);
 }
 
-void PoseFilterService::Answer(const depth_image_t& depth, const std::unique_ptr<detections_t>& detections_message) {
+void PoseFilterService::Answer(const depth_image_t& depth, const detections_t* detections_message,
+                               const color_image_t* colour) {
   const Frame frame = FromMessage(depth);
   std::optional<Detections> detections;
   if (detections_message) detections = FromMessage(*detections_message);
@@ -75,6 +77,7 @@ void PoseFilterService::Answer(const depth_image_t& depth, const std::unique_ptr
   input.received_utime = frame.received_utime;
   input.sequence = frame.sequence;
   input.camera = frame.camera;
+  if (colour) input.colour = FromMessage(*colour).colour;
   input.depth = frame.depth;
   input.metres_per_unit = frame.metres_per_unit;
   if (detections) input.detections = &*detections;

@@ -18,8 +18,8 @@ struct PoseFilterServiceOptions {
   int belief_frames = 5;             ///< CONNECTION_BELIEF of up to so many frames ago is handed to the filter
 };
 
-/// Steps when DEPTH_IMAGE and DETECTIONS of one utime are there, or without DETECTIONS as soon as the next DEPTH_IMAGE
-/// is (FrameJoiner).
+/// Steps when DEPTH_IMAGE, DETECTIONS and COLOR_IMAGE of one utime are there, or without what is missing as soon as the
+/// next DEPTH_IMAGE is (FrameJoiner). Colour tells whether the camera stood still.
 class PoseFilterService {
  public:
   using MakeFilter = std::function<std::unique_ptr<PoseFilter>(const Task&)>;
@@ -33,7 +33,7 @@ class PoseFilterService {
 
  private:
   void Step();
-  void Answer(const depth_image_t& depth, const std::unique_ptr<detections_t>& detections);
+  void Answer(const depth_image_t& depth, const detections_t* detections, const color_image_t* colour);
   void BeginAgain();
   void KeepState(const PartPoses& poses);
 
@@ -41,7 +41,7 @@ class PoseFilterService {
   std::unique_ptr<PoseFilter> filter_;
   PoseFilterServiceOptions options_;
   std::string task_sha256_;
-  FrameJoiner<depth_image_t, detections_t> frames_;
+  FrameJoiner<depth_image_t, detections_t, color_image_t> frames_;
   int64_t dropped_seen_ = 0;
   std::optional<ConnectionBelief> belief_;
   std::vector<int64_t> recent_utimes_;  ///< of the last steps, for the age of the belief

@@ -50,6 +50,12 @@ std::vector<Vector3> Anchors(const Blob& blob, const Observation& o, double expe
 
 }  // namespace
 
+bool Acceptable(const PoseCandidate& c, const PoseSearchOptions& options) {
+  return c.score.agreement() >= options.least_agreement && c.score.open() >= options.least_visible * c.full_samples &&
+         c.score.open() >= 12 && c.outline_support() >= options.least_outline &&
+         c.refinement.depth_chi2 <= options.largest_chi2;
+}
+
 PoseCandidate Polish(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
                      uint8_t class_bit, const Pose& X_CP, const RefinementOptions& options,
                      RefinementScratch& scratch) {
@@ -145,11 +151,7 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
       if (c.score.log_likelihood > enough && turned(c) < turned(best)) best = c;
     }
   }
-  const bool good = best.score.agreement() >= options.least_agreement &&
-                    best.score.open() >= options.least_visible * best.full_samples && best.score.open() >= 12 &&
-                    best.outline_support() >= options.least_outline &&
-                    best.refinement.depth_chi2 <= options.largest_chi2;
-  if (!good) return std::nullopt;
+  if (!Acceptable(best, options)) return std::nullopt;
   return best;
 }
 

@@ -36,6 +36,9 @@ struct PoseCandidate {
   }
 };
 
+/// Whether a pose explains the image well enough to be believed without having been believed before.
+bool Acceptable(const PoseCandidate& candidate, const PoseSearchOptions& options);
+
 /// Refines a pose and scores it at the end: what every hypothesis goes through before it may win.
 PoseCandidate Polish(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
                      uint8_t class_bit, const Pose& X_CP, const RefinementOptions& options, RefinementScratch& scratch);
