@@ -1,9 +1,9 @@
 // Runs the virtual robot without a bus, for tests of its page: one JSON order a line on standard input, the page's URL
-// and then every change of an act's state on standard output.
+// and then every change of an act's state and every call for help on standard output.
 //
 //   {"act": {"id": 1, "language": "en", "text": "...", "point": [x, y, z], "look": [x, y, z], "eyes": "blue"}}
 //   {"scene": {"parts": [[x, y, yaw], ...], "hands": [[x, y, z, radius], ...]}}
-//   {"stop": true}  {"rest": true}
+//   {"act": {"id": 2, "rest": true}}  {"stop": true}
 #include <poll.h>
 #include <unistd.h>
 
@@ -73,6 +73,7 @@ int main(int argc, char** argv) {
   Conductor conductor(options.conductor, robot);
   std::cout << robot.url() << std::endl;
   TableScene scene;
+  int64_t help = 0;
   std::string buffer;
   for (;;) {
     pollfd input{0, POLLIN, 0};
@@ -94,6 +95,6 @@ int main(int argc, char** argv) {
     for (const ActChange& change : conductor.TakeChanges()) {
       std::cout << change.id << ' ' << ToString(change.state) << ' ' << change.reason << std::endl;
     }
-    std::cout << std::flush;
+    if (conductor.help_requests() != help) std::cout << "help " << (help = conductor.help_requests()) << std::endl;
   }
 }
