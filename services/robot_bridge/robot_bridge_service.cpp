@@ -13,8 +13,8 @@ namespace coach {
 namespace {
 
 constexpr int64_t kStatusPeriod = 500000;   // us
-constexpr int64_t kRepeatFor = 5000000;     // us, how long a change is repeated
-constexpr size_t kMostRepeated = 8;         // changes
+constexpr int64_t kRepeatFor = 20000000;    // us, how long a change is repeated
+constexpr size_t kMostRepeated = 16;        // changes
 constexpr int64_t kSessionFresh = 5000000;  // us, how long ASSEMBLY_STATE's session is believed
 constexpr int64_t kRetirement = 3000000;    // us
 
