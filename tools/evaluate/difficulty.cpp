@@ -49,9 +49,8 @@ void MeasureNoise(const SceneTruth& truth, Difficulty* d) {
       }
     }
   }
-  // The median of |difference of two normal numbers| is 0.954 standard deviations. The mean is used for colour, whose
-  // steps are coarse: 1.128 standard deviations.
-  d->depth_noise_mm = Quantile(depth, 0.5) / 0.954;
+  // The mean of |difference of two normal numbers| is 1.128 standard deviations.
+  d->depth_noise_mm = Summarise(depth).mean / 1.128;
   d->colour_noise = Summarise(colour).mean / 1.128;
   d->depth_missing = pixels > 0 ? 100 * missing / pixels : 0;
 }

@@ -16,7 +16,7 @@ struct Difficulty {
   double under_half = 0, under_tenth = 0, hidden = 0;  ///< % of part-frames under 0.5, 0.1, 0.05 visible
   Statistics speed;           ///< m/s in the camera frame, of part-frames that move at over 0.02 m/s
   double turning_p95 = 0;     ///< degrees a second, of the same
-  double depth_noise_mm = 0;  ///< median over still pixels of the standard deviation in time
+  double depth_noise_mm = 0;  ///< standard deviation in time of still pixels
   double depth_missing = 0;   ///< % of pixels
   double colour_noise = 0;    ///< of 255, the same
 };

@@ -42,7 +42,7 @@ std::string Table(const std::vector<std::pair<std::string, Cell>>& rows, const s
 }
 
 Target AtMost(const std::string& what, double bound, const std::string& unit, std::optional<double> measured) {
-  Target t{what, "<= " + Text(bound, bound < 1 ? 1 : 0) + unit, "-"};
+  Target t{what, "<= " + Text(bound, bound == std::floor(bound) ? 0 : 1) + unit, "-"};
   if (!measured) return t;
   t.measured = Text(*measured) + unit;
   t.verdict = *measured <= bound ? Target::Verdict::kMet : Target::Verdict::kNotMet;

@@ -81,7 +81,8 @@ int CountSwitches(const SceneTruth& truth, const Estimates& e, Assignment slots)
 
 double AddS(const TrueObject& object, const Pose& X, const Pose& Y) {
   double sum = 0;
-  const Pose X_YX = Y.inverse() * X;
+  // Of the poses that look the same the nearest, so that the finite number of points makes no difference.
+  const Pose X_YX = Y.inverse() * NearestEquivalent(object.symmetries, X, Y);
   for (const Vector3& q : object.surface) {
     double nearest = 1e9;
     for (const Vector3& p : object.surface) nearest = std::min(nearest, (X_YX * p - q).squaredNorm());
