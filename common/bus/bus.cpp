@@ -15,7 +15,9 @@
 namespace coach {
 namespace {
 
-constexpr int kQueueCapacity = 1000;          // messages a subscription; LCM's default of 30 is two seconds of camera
+constexpr int kQueueCapacity = 1000;  // messages a subscription; LCM's own 30 loses commands behind a second of work
+constexpr int kImageQueueCapacity =
+    30;  // of channels of which the newest counts: bounds what a reader that stalls holds
 constexpr int kMaxMessagesAtOnce = 1000;      // a flooded bus must not keep the service from its work
 constexpr int64_t kLogInterval = 10'000'000;  // us
 
@@ -97,10 +99,10 @@ Bus::~Bus() { lcm_destroy(lcm_); }
 
 int Bus::file_descriptor() const { return lcm_get_fileno(lcm_); }
 
-void Bus::Add(const std::string& channel, bool newest, ByteHandler handler) {
+void Bus::Add(const std::string& channel, bool newest_only, bool skip, ByteHandler handler) {
   const std::string full = station_ + "/" + channel;
   auto subscription =
-      std::make_unique<Subscription>(Subscription{this, full, newest && !lockstep_, std::move(handler), {}, 0});
+      std::make_unique<Subscription>(Subscription{this, full, skip && !lockstep_, std::move(handler), {}, 0});
   const auto receive = [](const lcm_recv_buf_t* buffer, const char*, void* user) {
     auto& self = *static_cast<Subscription*>(user);
     const std::span<const uint8_t> bytes(static_cast<const uint8_t*>(buffer->data), buffer->data_size);
@@ -111,7 +113,7 @@ void Bus::Add(const std::string& channel, bool newest, ByteHandler handler) {
   };
   lcm_subscription_t* handle = lcm_subscribe(lcm_, Literal(full).c_str(), receive, subscription.get());
   if (!handle) throw BusError("cannot subscribe to " + full + " on " + url_);
-  lcm_subscription_set_queue_capacity(handle, kQueueCapacity);
+  lcm_subscription_set_queue_capacity(handle, newest_only ? kImageQueueCapacity : kQueueCapacity);
   subscriptions_.push_back(std::move(subscription));
 }
 

@@ -42,18 +42,18 @@ class Bus {
   /// A recording is read: one message at a time, none skipped.
   bool lockstep() const { return lockstep_; }
 
-  /// Every message in order. Of more than 1000 that wait between two calls of Handle(), the network's queue drops the
-  /// newest.
+  /// Every message in order. Of more than 1000 (30 of NewestOnly types) that wait between two calls of Handle(), the
+  /// network's queue drops the newest.
   template <Message M>
   void Subscribe(std::function<void(const M&)> handler) {
-    Add(kChannel<M>, false, Decoder<M>(std::move(handler)));
+    Add(kChannel<M>, NewestOnly<M>, false, Decoder<M>(std::move(handler)));
   }
 
   /// The newest of the messages that wait at each call of Handle(); the others are counted as skipped. In lockstep
   /// every message.
   template <NewestOnly M>
   void SubscribeNewest(std::function<void(const M&)> handler) {
-    Add(kChannel<M>, true, Decoder<M>(std::move(handler)));
+    Add(kChannel<M>, true, true, Decoder<M>(std::move(handler)));
   }
 
   /// Sends; never throws. @returns false if the message's counts do not agree with its arrays or the network refuses
@@ -94,7 +94,7 @@ class Bus {
       handler(message);
     };
   }
-  void Add(const std::string& channel, bool newest, ByteHandler handler);
+  void Add(const std::string& channel, bool newest_only, bool skip, ByteHandler handler);
   void Dispatch(Subscription& subscription, std::span<const uint8_t> bytes);
   void DispatchNewest();
   bool Refuse(const std::string& channel);
