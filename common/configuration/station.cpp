@@ -10,7 +10,7 @@
 namespace coach {
 namespace {
 
-constexpr std::array kSections{"camera", "detector", "pose_filter", "lesson", "robot", "page", "log"};
+constexpr std::array kSections{"camera", "detector", "pose_filter", "guidance", "robot", "page", "log"};
 
 bool GoodCharacter(char c) {
   return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';

@@ -41,12 +41,18 @@ TEST(Station, PathsStartAtTheFile) {
   EXPECT_EQ(station.Section("robot").Get<std::string>("back_end"), "log");
 }
 
+TEST(Station, EveryServiceHasItsSection) {
+  for (const char* section : {"camera", "detector", "pose_filter", "guidance", "robot", "page", "log"}) {
+    EXPECT_EQ(ErrorOf(std::string(section) + ": {}\n"), "");
+    EXPECT_THAT(ErrorOf(std::string(section) + ": 3\n"), HasSubstr(section));
+  }
+}
+
 TEST(Station, MistakesNameFileLineAndKey) {
   EXPECT_THAT(ErrorOf("station: A\ncamra: {}\n"), AllOf(HasSubstr("station.yaml:2"), HasSubstr("camra")));
   EXPECT_THAT(ErrorOf("bus: {tabel: x}\n"), HasSubstr("tabel"));
   EXPECT_THAT(ErrorOf("bus: {table: 239.255.76.67}\n"), AllOf(HasSubstr("station.yaml:1"), HasSubstr("udpm://")));
   EXPECT_THAT(ErrorOf("station: 'a/b'\n"), HasSubstr("1 to 32 characters"));
-  EXPECT_THAT(ErrorOf("camera: 3\n"), HasSubstr("camera"));
   EXPECT_THAT(ErrorOf("station: [\n"), HasSubstr("station.yaml"));
   EXPECT_THROW(ReadStation("/nowhere/station.yaml"), ConfigurationError);
 }
