@@ -15,7 +15,7 @@ struct TrackOptions {
       22;  ///< squared Mahalanobis distance (6 degrees of freedom) of a pose that says the part moves
   double floor_position = 0.0010;  ///< m, standard deviation added to what is published
   double floor_rotation = 0.010;   ///< rad
-  double hidden_growth = 0.004;    ///< m per sqrt(s): a part at rest that nothing seems to touch
+  double hidden_growth = 0.008;    ///< m per sqrt(s): a part at rest that nothing seems to touch
   double carried_growth = 0.10;    ///< m per s: a part that was moving when it was hidden
   double least_open = 0.12;        ///< share of the silhouette that must be open for an update
   double least_agreement = 0.45;   ///< Score::agreement below which the pose is not believed

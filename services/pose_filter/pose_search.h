@@ -12,8 +12,8 @@
 namespace coach {
 
 struct PoseSearchOptions {
-  int points = 110;                ///< of the cheap score
-  int refined = 10;                ///< best candidates that are refined
+  int points = 80;                 ///< of the cheap score
+  int refined = 8;                 ///< best candidates that are refined
   int polished = 3;                ///< best of those that are refined again, with their near symmetries
   double least_agreement = 0.6;    ///< Score::agreement of an accepted pose
   double almost_as_likely = 0.92;  ///< of the best log-likelihood: such poses are told apart by what was known before

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace coach {
 namespace {
@@ -137,8 +138,40 @@ int Inside(const Observation& observation, const OwnerMap& owners, int part, uin
   return own_class ? 1 : -1;
 }
 
+/// Place of the step along a search line from the colours themselves: mixed pixels at an edge are part inside, part
+/// outside, and the area under that share is the edge's place, without the bias of a colour range. Empty where the two
+/// sides differ too little or something is in front.
+/// @param near sample at which the class map has the step. @param g what the samples -L..L say, indexed from the
+/// middle.
+std::optional<double> ColourEdge(const Observation& observation, double u, double v, const Eigen::Vector2d& normal,
+                                 int near, const int* g, int L) {
+  constexpr int kReach = 3, kSide = 2;  // samples looked at around the step, and beyond them for the two sides' colours
+  if (!observation.bgr || near - kReach - kSide < -L || near + kReach + kSide > L) return std::nullopt;
+  const auto colour = [&](int s) {
+    const int x = Nearest(u + s * normal.x()), y = Nearest(v + s * normal.y());
+    const uint8_t* p = observation.bgr + 3 * (static_cast<size_t>(y) * static_cast<size_t>(observation.camera.width) +
+                                              static_cast<size_t>(x));
+    return Eigen::Vector3f(p[0], p[1], p[2]);
+  };
+  Eigen::Vector3f in = Eigen::Vector3f::Zero(), out = in;
+  for (int s = near - kReach - kSide; s <= near + kReach + kSide; ++s) {
+    const int x = Nearest(u + s * normal.x()), y = Nearest(v + s * normal.y());
+    if (g[s] == 0 || !observation.Inside(x, y)) return std::nullopt;
+    if (s < near - kReach) in += colour(s) / kSide;
+    if (s > near + kReach) out += colour(s) / kSide;
+  }
+  const Eigen::Vector3f axis = in - out;
+  const float contrast = axis.squaredNorm();
+  if (contrast < 40 * 40) return std::nullopt;
+  double share = 0;
+  for (int s = near - kReach; s <= near + kReach; ++s)
+    share += std::clamp((colour(s) - out).dot(axis) / contrast, 0.0f, 1.0f);
+  return near - kReach - 0.5 + share;
+}
+
 void AddContour(const Observation& observation, const OwnerMap& owners, int part, uint8_t class_bit, const Pose& X_CP,
-                const std::vector<RefinementScratch::OutlinePoint>& outline, int half_length, Normal& normal) {
+                const std::vector<RefinementScratch::OutlinePoint>& outline, int half_length, double bias,
+                Normal& normal) {
   constexpr int kLongest = 16;
   constexpr double kGain = 1.2;  // nats a sample: a class map is wrong for about one pixel in ten near an edge
   const int L = std::min(half_length, kLongest);
@@ -178,7 +211,12 @@ void AddContour(const Observation& observation, const OwnerMap& owners, int part
                        o.normal.y() * camera.fy * Vector3(0, 1, -p.y() / p.z())) /
                       p.z();
     const double robust = Tukey(mean, L + 1.0);
-    if (robust > 0) normal.AddOutline(PointJacobian(a, arm), mean, 1 / variance, robust);
+    if (robust <= 0) continue;
+    if (const auto edge = ColourEdge(observation, u, v, o.normal, Nearest(mean), g + L, L)) {
+      normal.Add(PointJacobian(a, arm), 0.5 * (*edge + mean - bias), 1 / variance, robust);
+    } else {
+      normal.AddOutline(PointJacobian(a, arm), mean, 1 / variance, robust);
+    }
   }
 }
 
@@ -233,6 +271,7 @@ RefinementResult Refine(const PartModel& model, const Observation& observation, 
                         RefinementScratch& scratch) {
   RefinementResult result;
   result.X_CP = start;
+  result.outline_bias = options.outline_bias;
   Pose rendered_at = start;
   const double reach = model.extent.diameter / 2;
   for (int k = 0; k < options.iterations; ++k) {
@@ -253,7 +292,7 @@ RefinementResult Refine(const PartModel& model, const Observation& observation, 
                options.last_gate_sigmas, blend, depth);
     if (observation.class_map) {
       const int L = Nearest((1 - blend) * options.first_half_length + blend * options.last_half_length);
-      AddContour(observation, owners, part, class_bit, result.X_CP, scratch.outline, L, contour);
+      AddContour(observation, owners, part, class_bit, result.X_CP, scratch.outline, L, result.outline_bias, contour);
     }
     result.depth_used = depth.used;
     result.contour_used = contour.used;
