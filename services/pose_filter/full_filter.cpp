@@ -86,6 +86,9 @@ PartPoses FullFilter::Step(const FilterInput& input) {
   });
   UpdateLinks(input);
   updated_.assign(tracks_.size(), false);
+  std::vector<Pose>& before = poses_before_;
+  before.clear();
+  for (const Track& track : tracks_) before.push_back(track.X_TP);
   TrySuggestions(observation);
   for (const int part : order) {
     Track& track = tracks_[part];
@@ -104,6 +107,8 @@ PartPoses FullFilter::Step(const FilterInput& input) {
     if (track.alive()) UpdateTrack(part, observation, dt);
   }
   Recover(observation);
+  for (size_t k = 0; k < tracks_.size(); ++k) Settle(before[k], dt, options_.track, tracks_[k]);
+  RepairIdentities(observation);
   foreign_.Find(observation, owners_, camera_.X_TC(), area_, dt);
   ++steps_;
   return Output(input);
@@ -255,6 +260,35 @@ double FullFilter::CollisionCost(int part, const PoseCandidate& candidate) const
   }
   return std::min(1.0, overlap / options_.full_overlap) * options_.collision_cost *
          std::abs(candidate.score.log_likelihood);
+}
+
+void FullFilter::RepairIdentities(const Observation& observation) {
+  for (Track& track : tracks_) track.exchanged_with = -1;
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    for (size_t j = i + 1; j < tracks_.size(); ++j) {
+      Track &a = tracks_[i], &b = tracks_[j];
+      if (task_.parts[i].type != task_.parts[j].type || a.missing() || b.missing()) continue;
+      if (a.settled_for > options_.track.settle_time && b.settled_for > options_.track.settle_time) continue;
+      // If only one of the two was moved, keeping the names is the shorter way by the triangle inequality.
+      const auto way = [](const Track& from, const Track& to) {
+        return (from.anchor.translation() - to.X_TP.translation()).norm();
+      };
+      if (way(a, b) + way(b, a) + options_.exchange_margin > way(a, a) + way(b, b)) continue;
+      std::swap(a, b);
+      std::swap(a.anchor, b.anchor);
+      for (Track* track : {&a, &b}) {
+        const SymmetryGroup& symmetries = ShapeOf(static_cast<int>(i)).model.symmetries;
+        track->X_TP = NearestEquivalent(symmetries, track->X_TP, track->anchor);
+        track->X_TP_free = NearestEquivalent(symmetries, track->X_TP_free, track->anchor);
+      }
+      a.exchanged_with = static_cast<int>(j);
+      b.exchanged_with = static_cast<int>(i);
+      owners_.Remove(static_cast<int>(i), tiles_[i]);
+      owners_.Remove(static_cast<int>(j), tiles_[j]);
+      Place(static_cast<int>(i), observation);
+      Place(static_cast<int>(j), observation);
+    }
+  }
 }
 
 void FullFilter::TestRivals(int part, const Observation& observation, double dt, PoseCandidate& best) {

@@ -25,6 +25,7 @@ struct FullFilterOptions {
   /// Of the likelihood, for a pose one reach (3 cm and more) or turn (0.4 rad) from the expected one; grows with the
   /// square, at most three times.
   double jump_cost = 0.03;
+  double exchange_margin = 0.04;   ///< m, by which two equal parts must come a shorter way with their names exchanged
   double rival_open = 0.35;        ///< share of the silhouette that must be open for a near symmetry to be tried
   double rival_gain = 0.015;       ///< of the likelihood, by which it must be better for several frames
   double collision_cost = 0.2;     ///< of the likelihood, for a pose that lies in another part
@@ -68,6 +69,9 @@ class FullFilter final : public PoseFilter {
   void TrySuggestions(const Observation& observation);
   void LocateCamera(const Observation& observation);
   void BuildOwners(const Observation& observation, double dt);
+  /// Of two equal parts of which one jumped: gives the names so that both came the shorter way from where they were
+  /// beyond doubt.
+  void RepairIdentities(const Observation& observation);
   /// Tries poses that look almost the same as `best` and takes one over if it has been the better one for some frames.
   void TestRivals(int part, const Observation& observation, double dt, PoseCandidate& best);
   /// Equation [5] as a cost (nats) instead of a factor: measured poses of parts in contact overlap a little.
@@ -101,6 +105,7 @@ class FullFilter final : public PoseFilter {
   std::vector<DepthTile> tiles_;  // of each part, as added to owners_
   std::vector<Pose> suggested_;
   std::vector<Link> links_;
+  std::vector<Pose> poses_before_;
   std::vector<bool> updated_;  // parts whose pose is that of this frame
   BlobFinder blob_finder_;
   Distractors distractors_;

@@ -83,7 +83,9 @@ bool Constrain(const Pose& X_TP, const Matrix6& covariance, Track& track) {
 }
 
 void Restart(const PoseCandidate& candidate, const Pose& X_TC, Track& track) {
+  const Pose anchor = track.status == PartStatus::kAbsent ? X_TC * candidate.X_CP : track.anchor;
   track = Track();
+  track.anchor = anchor;
   track.status = PartStatus::kTracked;
   track.X_TP = track.X_TP_free = X_TC * candidate.X_CP;
   track.covariance =
@@ -116,6 +118,12 @@ void Coast(PartStatus status, double dt, const TrackOptions& options, Track& tra
   track.covariance_free = track.covariance;
 }
 
+void Settle(const Pose& X_TP_before, double dt, const TrackOptions& options, Track& track) {
+  const bool jumped = (track.X_TP.translation() - X_TP_before.translation()).norm() > options.jump;
+  track.settled_for = jumped || track.missing() ? 0 : track.settled_for + dt;
+  if (track.settled_for > options.settle_time) track.anchor = track.X_TP;
+}
+
 PartEstimate Publish(const Track& track, const TrackOptions& options) {
   PartEstimate out;
   out.X_TP = track.X_TP;
@@ -124,6 +132,7 @@ PartEstimate Publish(const Track& track, const TrackOptions& options) {
   out.visible_fraction = track.visible_fraction;
   out.status = track.status;
   out.confidence = track.confidence;
+  out.identity_exchange = track.exchanged_with;
   return out;
 }
 

@@ -19,6 +19,8 @@ struct TrackOptions {
   double carried_growth = 0.10;    ///< m per s: a part that was moving when it was hidden
   double least_open = 0.12;        ///< share of the silhouette that must be open for an update
   double least_agreement = 0.45;   ///< Score::agreement below which the pose is not believed
+  double jump = 0.05;              ///< m in one frame: the part may have been taken for another
+  double settle_time = 1.0;        ///< s without a jump after which an identity is beyond doubt
   int bad_frames = 2;              ///< in a row until the part is lost
 };
 
@@ -36,10 +38,14 @@ struct Track {
   int next_rival = 0;
   double seen_for = 0;  ///< s without a break
   bool moving = false;
-  double moving_for = 0;  ///< s since it was last seen to move; 0: moves now
-  double hidden_for = 0;  ///< s without an update
-  bool carried = false;   ///< it moved, or a hand touched it, when it was hidden
-  int bad = 0;            ///< frames in a row in which the image contradicts the pose
+  double moving_for = 0;           ///< s since it was last seen to move; 0: moves now
+  double hidden_for = 0;           ///< s without an update
+  bool carried = false;            ///< it moved, or a hand touched it, when it was hidden
+  int bad = 0;                     ///< frames in a row in which the image contradicts the pose
+  Pose anchor = Pose::Identity();  ///< table frame; where the part was when its identity was last beyond doubt
+  double settled_for = 0;          ///< s since it last jumped, was lost or was hidden
+  int exchanged_with = -1;         ///< equal part it exchanged its identity with in this frame
+
   /// Not seen in this frame where it is believed to be.
   bool missing() const { return status != PartStatus::kTracked || bad > 0; }
   bool alive() const { return status != PartStatus::kAbsent && status != PartStatus::kLost; }
@@ -60,6 +66,9 @@ void Restart(const PoseCandidate& candidate, const Pose& X_TC, Track& track);
 
 /// A step without evidence: the pose stays, the covariance grows.
 void Coast(PartStatus status, double dt, const TrackOptions& options, Track& track);
+
+/// Keeps book of jumps: X_TP_before is the pose of the frame before.
+void Settle(const Pose& X_TP_before, double dt, const TrackOptions& options, Track& track);
 
 /// What the track publishes.
 PartEstimate Publish(const Track& track, const TrackOptions& options);
