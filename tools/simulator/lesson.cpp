@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace coach {
 namespace {
@@ -49,40 +50,116 @@ std::vector<BuildStep> BuildOrder(const Task& task, int* first_slot) {
   return steps;
 }
 
-class Lesson {
- public:
-  Lesson(const Task& task, const Structure& structure, const Solids& solids, const LessonPlan& plan, Child* child,
-         Performance* performance, Random& random)
+}  // namespace
+
+Pose StructurePlace(const Task& task, const Structure& structure, const Solids& solids, Random& random) {
+  const Matrix3 R = Eigen::AngleAxisd(random.Uniform(-M_PI, M_PI), Vector3::UnitZ()).toRotationMatrix();
+  Vector3 middle = Vector3::Zero();
+  double low = 1e9;
+  int count = 0;
+  for (size_t slot = 0; slot < task.slots.size(); ++slot) {
+    if (!structure.reached[slot] || structure.part[slot] < 0) continue;
+    const Pose X = MakePose(R, Vector3::Zero()) * structure.X_slot[slot];
+    middle += X.translation();
+    low = std::min(low, X.translation().z() + solids.Lowest(structure.part[slot], X.linear()));
+    ++count;
+  }
+  if (count == 0) return Pose::Identity();
+  middle /= count;
+  return MakePose(R, Vector3(random.Uniform(-0.04, 0.04) - middle.x(), random.Uniform(-0.04, 0.04) - middle.y(), -low));
+}
+
+std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Structure& structure,
+                               const Pose& X_W_structure, const std::vector<Place>& avoid, double any_face,
+                               Random& random) {
+  const int n = static_cast<int>(task.parts.size());
+  std::vector<Matrix3> lying(static_cast<size_t>(n), Matrix3::Identity());
+  std::vector<Place> taken = avoid;
+  int first = 0;
+  const bool builds = !BuildOrder(task, &first).empty();
+  const int base = builds ? structure.part[static_cast<size_t>(first)] : -1;
+  for (size_t slot = 0; slot < task.slots.size(); ++slot) {
+    const int part = structure.part[slot];
+    if (part < 0 || !structure.reached[slot]) continue;
+    const Pose X = X_W_structure * structure.X_slot[slot];
+    lying[static_cast<size_t>(part)] = X.linear();
+    if (builds) taken.push_back(Footprint(solids, part, X));
+  }
+  std::vector<Pose> poses(static_cast<size_t>(n), Pose::Identity());
+  for (int part = 0; part < n; ++part) {
+    if (part == base) {
+      poses[static_cast<size_t>(part)] = X_W_structure * structure.X_slot[static_cast<size_t>(first)];
+      continue;
+    }
+    double reach = 1, apart = kApart;
+    for (int attempt = 0;; ++attempt) {
+      if (attempt % 200 == 199) reach = std::min(1.3, 1.1 * reach), apart *= 0.6;
+      Matrix3 R = lying[static_cast<size_t>(part)];
+      if (random.Chance(any_face)) {
+        const auto rests = solids.Rests(part);
+        R = rests[static_cast<size_t>(random.Pick(static_cast<int>(rests.size())))];
+      }
+      R = Eigen::AngleAxisd(random.Uniform(-M_PI, M_PI), Vector3::UnitZ()).toRotationMatrix() * R;
+      const Pose X = Resting(solids, part, R, reach * random.Uniform(-kReachX, kReachX),
+                             random.Uniform(reach * kNearY, reach * kFarY));
+      const Place c = Footprint(solids, part, X);
+      const bool free = std::none_of(taken.begin(), taken.end(), [&](const Place& t) {
+        return (c.centre - t.centre).norm() < c.radius + t.radius + apart;
+      });
+      if (!free && attempt < 3000) continue;
+      poses[static_cast<size_t>(part)] = X;
+      taken.push_back(c);
+      break;
+    }
+  }
+  return poses;
+}
+
+struct Lesson::Impl {
+  Impl(const Task& task, const Structure& structure, const Solids& solids, Child* child, Performance* performance,
+       Random& random)
       : task_(task),
         structure_(structure),
         solids_(solids),
-        plan_(plan),
         child_(*child),
         performance_(*performance),
         random_(random),
         made_(task.connections.size(), false) {}
 
-  void Play() {
-    int first = 0;
-    const std::vector<BuildStep> steps = BuildOrder(task_, &first);
-    if (steps.empty()) return;
-    placed_.push_back(first);
+  void Play(const LessonPlan& plan) {
     int mistakes =
-        static_cast<int>(plan_.mistakes) + (random_.Chance(plan_.mistakes - std::floor(plan_.mistakes)) ? 1 : 0);
-    const size_t away = steps.size() > 1 ? static_cast<size_t>(random_.Pick(2)) : 0;
-    for (size_t i = 0; i < steps.size(); ++i) {
-      const int part = Part(steps[i].slot);
-      if (plan_.out_of_view && i == away) LeaveAndReturn(Part(steps.back().slot));
-      if (plan_.cover && i == (steps.size() > 1 ? 1u : 0u)) CoverSomething();
-      if (mistakes > 0 && (i + static_cast<size_t>(mistakes) >= steps.size() || random_.Chance(0.5)) && MakeMistake())
+        static_cast<int>(plan.mistakes) + (random_.Chance(plan.mistakes - std::floor(plan.mistakes)) ? 1 : 0);
+    const size_t away = steps_.size() > 1 ? static_cast<size_t>(random_.Pick(2)) : 0;
+    for (size_t i = 0; i < steps_.size(); ++i) {
+      const bool last = i + 1 == steps_.size();
+      if (plan.out_of_view && i == away) LeaveAndReturn(Part(steps_.back().slot));
+      if (plan.cover && i == (steps_.size() > 1 ? 1u : 0u)) CoverSomething();
+      if (mistakes > 0 && (i + static_cast<size_t>(mistakes) >= steps_.size() || random_.Chance(0.5)) && Err()) {
+        child_.Wait(random_.Uniform(2.2, 3.2));
+        Undo();
         --mistakes;
-      if (plan_.turn && i + 1 == steps.size()) TurnStructure();
-      BuildOn(steps[i], part, plan_.near_miss && i + 1 == steps.size());
+      }
+      if (plan.turn && last) TurnStructure();
+      BuildOn(steps_[i], Part(steps_[i].slot), plan.near_miss && last);
     }
     child_.Wait(1.5);
   }
 
- private:
+  void Build(int connection, bool near_miss) {
+    if (mistake_) return;
+    const BuildStep* chosen = nullptr;
+    for (const BuildStep& step : steps_) {
+      if (Placed(step.slot) || !Placed(step.base_slot)) continue;
+      const Connection* asked = connection < 0 ? nullptr : &task_.connections[static_cast<size_t>(connection)];
+      const bool fits = asked && ((asked->slot_a == step.slot && asked->slot_b == step.base_slot) ||
+                                  (asked->slot_b == step.slot && asked->slot_a == step.base_slot));
+      if (!chosen || fits) chosen = &step;
+    }
+    if (chosen) BuildOn(*chosen, Part(chosen->slot), near_miss);
+  }
+
+  bool complete() const { return !mistake_ && placed_.size() == steps_.size() + 1; }
+
   int Part(int slot) const { return structure_.part[static_cast<size_t>(slot)]; }
   Side HandFor(int thing) const { return child_.NearerHand(child_.PoseOf(thing).translation()); }
 
@@ -201,7 +278,8 @@ class Lesson {
     return Resting(solids_, part, child_.PoseOf(part).linear(), hand == Side::kLeft ? 0.3 : -0.3, -0.2);
   }
 
-  bool MakeMistake() {
+  bool Err() {
+    if (mistake_) return false;
     struct Option {
       int mistake, base, part;
       Pose X_base_part;
@@ -233,9 +311,8 @@ class Lesson {
       Child::Joint joint{.base = o.base, .part = o.part, .X_base_part = o.X_base_part, .keep = true};
       const double time = child_.Join(hand, joint);
       Declare(time, "wrong_connect", name, o.base, o.part);
-      if (random_.Chance(0.5)) child_.Release(hand);
-      child_.Wait(random_.Uniform(2.2, 3.2));
-      child_.TakeOff(hand, o.part, name, o.base, back);
+      LetGo();
+      mistake_ = OpenMistake{o.base, o.part, name, back};
       return true;
     }
     return false;
@@ -246,6 +323,13 @@ class Lesson {
     const std::string& own_class = classes_[task_.connections.size() + static_cast<size_t>(mistake)];
     return std::find(classes_.begin(), classes_.begin() + static_cast<long>(task_.connections.size()), own_class) !=
            classes_.begin() + static_cast<long>(task_.connections.size());
+  }
+
+  void Undo() {
+    if (!mistake_) return;
+    const OpenMistake m = *mistake_;
+    mistake_.reset();
+    child_.TakeOff(HandFor(m.part), m.part, m.name, m.base, m.back);
   }
 
   void TurnStructure() {
@@ -278,83 +362,32 @@ class Lesson {
   const Task& task_;
   const Structure& structure_;
   const Solids& solids_;
-  const LessonPlan& plan_;
   Child& child_;
   Performance& performance_;
   Random& random_;
-  std::vector<int> placed_;  // slots
+  struct OpenMistake {
+    int base, part;
+    std::string name;
+    Pose back;  // where the part came from
+  };
+  int first_slot_ = 0;
+  const std::vector<BuildStep> steps_ = BuildOrder(task_, &first_slot_);
+  std::vector<int> placed_{first_slot_};  // slots
+  std::optional<OpenMistake> mistake_;
   std::vector<bool> made_;
   const std::vector<std::string> classes_ = JointClasses(task_);  // of connections, then mistakes
 };
 
-}  // namespace
+Lesson::Lesson(const Task& task, const Structure& structure, const Solids& solids, Child* child,
+               Performance* performance, Random* random)
+    : impl_(std::make_unique<Impl>(task, structure, solids, child, performance, *random)) {}
+Lesson::~Lesson() = default;
 
-Pose StructurePlace(const Task& task, const Structure& structure, const Solids& solids, Random& random) {
-  const Matrix3 R = Eigen::AngleAxisd(random.Uniform(-M_PI, M_PI), Vector3::UnitZ()).toRotationMatrix();
-  Vector3 middle = Vector3::Zero();
-  double low = 1e9;
-  int count = 0;
-  for (size_t slot = 0; slot < task.slots.size(); ++slot) {
-    if (!structure.reached[slot] || structure.part[slot] < 0) continue;
-    const Pose X = MakePose(R, Vector3::Zero()) * structure.X_slot[slot];
-    middle += X.translation();
-    low = std::min(low, X.translation().z() + solids.Lowest(structure.part[slot], X.linear()));
-    ++count;
-  }
-  if (count == 0) return Pose::Identity();
-  middle /= count;
-  return MakePose(R, Vector3(random.Uniform(-0.04, 0.04) - middle.x(), random.Uniform(-0.04, 0.04) - middle.y(), -low));
-}
-
-std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Structure& structure,
-                               const Pose& X_W_structure, const std::vector<Place>& avoid, double any_face,
-                               Random& random) {
-  const int n = static_cast<int>(task.parts.size());
-  std::vector<Matrix3> lying(static_cast<size_t>(n), Matrix3::Identity());
-  std::vector<Place> taken = avoid;
-  int first = 0;
-  const bool builds = !BuildOrder(task, &first).empty();
-  const int base = builds ? structure.part[static_cast<size_t>(first)] : -1;
-  for (size_t slot = 0; slot < task.slots.size(); ++slot) {
-    const int part = structure.part[slot];
-    if (part < 0 || !structure.reached[slot]) continue;
-    const Pose X = X_W_structure * structure.X_slot[slot];
-    lying[static_cast<size_t>(part)] = X.linear();
-    if (builds) taken.push_back(Footprint(solids, part, X));
-  }
-  std::vector<Pose> poses(static_cast<size_t>(n), Pose::Identity());
-  for (int part = 0; part < n; ++part) {
-    if (part == base) {
-      poses[static_cast<size_t>(part)] = X_W_structure * structure.X_slot[static_cast<size_t>(first)];
-      continue;
-    }
-    double reach = 1, apart = kApart;
-    for (int attempt = 0;; ++attempt) {
-      if (attempt % 200 == 199) reach = std::min(1.3, 1.1 * reach), apart *= 0.6;
-      Matrix3 R = lying[static_cast<size_t>(part)];
-      if (random.Chance(any_face)) {
-        const auto rests = solids.Rests(part);
-        R = rests[static_cast<size_t>(random.Pick(static_cast<int>(rests.size())))];
-      }
-      R = Eigen::AngleAxisd(random.Uniform(-M_PI, M_PI), Vector3::UnitZ()).toRotationMatrix() * R;
-      const Pose X = Resting(solids, part, R, reach * random.Uniform(-kReachX, kReachX),
-                             random.Uniform(reach * kNearY, reach * kFarY));
-      const Place c = Footprint(solids, part, X);
-      const bool free = std::none_of(taken.begin(), taken.end(), [&](const Place& t) {
-        return (c.centre - t.centre).norm() < c.radius + t.radius + apart;
-      });
-      if (!free && attempt < 3000) continue;
-      poses[static_cast<size_t>(part)] = X;
-      taken.push_back(c);
-      break;
-    }
-  }
-  return poses;
-}
-
-void PlayLesson(const Task& task, const Structure& structure, const Solids& solids, const LessonPlan& plan,
-                Child* child, Performance* performance, Random& random) {
-  Lesson(task, structure, solids, plan, child, performance, random).Play();
-}
+void Lesson::Play(const LessonPlan& plan) { impl_->Play(plan); }
+void Lesson::Build(int connection, bool near_miss) { impl_->Build(connection, near_miss); }
+bool Lesson::Err() { return impl_->Err(); }
+void Lesson::Undo() { impl_->Undo(); }
+bool Lesson::mistaken() const { return impl_->mistake_.has_value(); }
+bool Lesson::complete() const { return impl_->complete(); }
 
 }  // namespace coach

@@ -1,6 +1,8 @@
 // Plays a lesson: the child builds the task's structure, with mistakes and interludes.
 #pragma once
 
+#include <memory>
+
 #include "tools/simulator/child.h"
 #include "tools/simulator/room.h"
 #include "tools/simulator/structure.h"
@@ -24,8 +26,28 @@ std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Str
                                const Pose& X_W_structure, const std::vector<Place>& avoid, double any_face,
                                Random& random);
 
-/// Builds the structure from its first joint on.
-void PlayLesson(const Task& task, const Structure& structure, const Solids& solids, const LessonPlan& plan,
-                Child* child, Performance* performance, Random& random);
+/// A lesson that is planned act by act, at the child's now().
+class Lesson {
+ public:
+  /// All must outlive it. The part of the first slot lies at its place.
+  Lesson(const Task& task, const Structure& structure, const Solids& solids, Child* child, Performance* performance,
+         Random* random);
+  ~Lesson();
+
+  /// Builds everything, with interludes.
+  void Play(const LessonPlan& plan);
+  /// Makes a connection (index into Task::connections), or the next one in the task's order if it can't be made now.
+  /// Nothing if the structure is complete or a mistake is in the way.
+  void Build(int connection, bool near_miss = false);
+  /// Makes a wrong connection and leaves it. False if there is none to make.
+  bool Err();
+  void Undo();  ///< takes the mistake apart again
+  bool mistaken() const;
+  bool complete() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace coach

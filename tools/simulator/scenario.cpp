@@ -136,10 +136,17 @@ void Build(Making* m) {
     const Pose place = StructurePlace(m->task, m->structure, *m->solids, m->random);
     m->Place(ScatterParts(m->task, *m->solids, m->structure, place, m->scenario.stage.room.clutter, 0.3, m->random));
     m->child->set_now(1.2);
-    PlayLesson(m->task, m->structure, *m->solids, plan, m->child.get(), &m->scenario.performance, m->random);
+    Lesson(m->task, m->structure, *m->solids, m->child.get(), &m->scenario.performance, &m->random).Play(plan);
     const double limit = m->scenario.options.seconds;
     if (limit <= 0 || m->child->now() <= limit) break;
   }
+}
+
+void Ready(Making* m) {
+  m->Furnish({});
+  const Pose place = StructurePlace(m->task, m->structure, *m->solids, m->random);
+  m->Place(ScatterParts(m->task, *m->solids, m->structure, place, m->scenario.stage.room.clutter, 0.2, m->random));
+  m->child->set_now(3);
 }
 
 void BuildWithJolts(Making* m) {
@@ -423,6 +430,7 @@ const std::vector<Entry>& Entries() {
   static const std::vector<Entry> entries{
       {{"assemble", "a lesson: the structure is built, with interludes, a mistake that is undone and a near miss"},
        Build},
+      {{"ready", "the parts lie ready for a lesson, the child waits"}, Ready},
       {{"fig4", "parts lie still, the camera moves round an obstacle and is jolted (the paper's Fig. 4)"}, Fig4},
       {{"start", "all parts apart on the table, resting on any face; nobody there"}, Start},
       {{"hidden_still", "a part that lies still is fully hidden for 2 s"}, HiddenStill},

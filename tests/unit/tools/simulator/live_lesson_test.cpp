@@ -1,0 +1,84 @@
+#include "tools/simulator/live_lesson.h"
+
+#include <gmock/gmock.h>
+
+#include "common/assembly/task_file.h"
+
+namespace coach {
+namespace {
+
+using Temper = LiveLessonOptions::Temper;
+
+LiveLesson Start(Temper temper) {
+  ScenarioOptions options;
+  options.name = "ready";
+  options.seed = 3;
+  LiveLessonOptions live;
+  live.temper = temper;
+  return LiveLesson(MakeScenario(LoadTask(COACH_SOURCE_DIR "/deploy/tasks/rectangle_long_medium.yaml"), options), live);
+}
+
+int Count(const LiveLesson& lesson, const std::string& kind) {
+  const auto& events = lesson.performance().events;
+  return static_cast<int>(
+      std::count_if(events.begin(), events.end(), [&](const TrueEvent& e) { return e.kind == kind; }));
+}
+
+/// A robot that knows the truth: asks for the task's steps in turn, and objects to mistakes, each 2 s after the event.
+double Teach(LiveLesson* lesson, bool speaks) {
+  const Task& task = lesson->scenario().stage.task;
+  for (double t = 0; t < 300; t += 0.1) {
+    if (speaks && std::fmod(t, 2) < 0.1) {
+      const int made = Count(*lesson, "connect");
+      if (Count(*lesson, "wrong_connect") > Count(*lesson, "disconnect")) {
+        lesson->SayWrong();
+      } else {
+        lesson->Ask(task.steps[static_cast<size_t>(std::min(made, static_cast<int>(task.steps.size()) - 1))]);
+      }
+    }
+    lesson->Advance(t);
+    if (lesson->complete()) return t;
+  }
+  return 300;
+}
+
+TEST(LiveLessonTest, AChildThatListensFinishesWithoutAMistake) {
+  LiveLesson lesson = Start(Temper::kListens);
+  EXPECT_LT(Teach(&lesson, true), 60);
+  EXPECT_EQ(Count(lesson, "connect"), 4);
+  EXPECT_EQ(Count(lesson, "wrong_connect"), 0);
+}
+
+TEST(LiveLessonTest, AChildThatListensDoesNothingUnasked) {
+  LiveLesson lesson = Start(Temper::kListens);
+  EXPECT_EQ(Teach(&lesson, false), 300);
+  EXPECT_TRUE(lesson.performance().events.empty());
+}
+
+TEST(LiveLessonTest, AChildThatErrsIsCorrected) {
+  LiveLesson lesson = Start(Temper::kErrs);
+  EXPECT_LT(Teach(&lesson, true), 120);
+  EXPECT_GT(Count(lesson, "wrong_connect"), 0);
+  EXPECT_EQ(Count(lesson, "wrong_connect"), Count(lesson, "disconnect"));
+}
+
+TEST(LiveLessonTest, AChildThatNeverListensIsNotMovedByWords) {
+  LiveLesson quiet = Start(Temper::kNeverListens), spoken_to = Start(Temper::kNeverListens);
+  EXPECT_EQ(Teach(&quiet, false), Teach(&spoken_to, true));
+}
+
+TEST(LiveLessonTest, WhatHasBeenSeenDoesNotChange) {
+  LiveLesson lesson = Start(Temper::kListens);
+  std::vector<Pose> seen;
+  for (double t = 0; t < 30; t += 0.1) {
+    if (t > 1) lesson.Ask(0);
+    lesson.Advance(t);
+    seen.push_back(lesson.performance().things.At(2, t));
+  }
+  for (size_t i = 0; i < seen.size(); ++i) {
+    EXPECT_TRUE(seen[i].isApprox(lesson.performance().things.At(2, 0.1 * static_cast<double>(i)), 1e-6)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace coach
