@@ -95,7 +95,12 @@ void PoseFilterService::KeepState(const PartPoses& poses) {
   if (std::optional<FilterState> state = StateOf(poses, task_sha256_)) state_ = std::move(state);
   if (options_.state_file.empty() || node_.lockstep() || !state_ || SteadyTime() - last_state_ < 1'000'000) return;
   last_state_ = SteadyTime();
-  WriteState(options_.state_file, *state_);
+  try {
+    WriteState(options_.state_file, *state_);
+    node_.SetState(service_health_t::OK, "");
+  } catch (const std::runtime_error& e) {
+    node_.SetState(service_health_t::DEGRADED, e.what());  // a full disk is no reason to stop tracking
+  }
 }
 
 }  // namespace coach

@@ -19,11 +19,21 @@ int main(int argc, char** argv) {
     const LogSummary summary = Summarise(reader);
     std::printf("%s: %lld messages, %.1f s, %.1f MB\n", file.c_str(), static_cast<long long>(summary.events),
                 summary.seconds, static_cast<double>(summary.bytes) / 1e6);
-    std::printf("%-36s %8s %8s %10s %8s %11s\n", "channel", "messages", "Hz", "MB", "missing", "undecodable");
+    std::printf("%-36s %8s %8s %10s %8s %11s %16s\n", "channel", "messages", "Hz", "MB", "missing", "undecodable",
+                "age p50/p99 ms");
     for (const auto& [name, channel] : summary.channels) {
-      std::printf("%-36s %8lld %8.1f %10.2f %8lld %11s\n", name.c_str(), static_cast<long long>(channel.events),
-                  channel.rate(), static_cast<double>(channel.bytes) / 1e6, static_cast<long long>(channel.missing),
-                  channel.known ? std::to_string(channel.undecodable).c_str() : "not ours");
+      std::printf("%-36s %8lld %8.1f %10.2f %8lld %11s %8.1f/%7.1f\n", name.c_str(),
+                  static_cast<long long>(channel.events), channel.rate(), static_cast<double>(channel.bytes) / 1e6,
+                  static_cast<long long>(channel.missing),
+                  channel.known ? std::to_string(channel.undecodable).c_str() : "not ours", channel.AgePercentile(50),
+                  channel.AgePercentile(99));
+    }
+    for (const auto& [name, health] : summary.health) {
+      std::printf("%s: received %lld, answered %lld, dropped %lld; socket drops %lld, bad messages %lld; %.0f MB%s%s\n",
+                  name.c_str(), static_cast<long long>(health.received), static_cast<long long>(health.answered),
+                  static_cast<long long>(health.dropped), static_cast<long long>(health.socket_drops),
+                  static_cast<long long>(health.decode_errors), static_cast<double>(health.resident_bytes) / 1e6,
+                  health.message.empty() ? "" : "; ", health.message.c_str());
     }
     const auto problems = ProblemsOf(summary, required);
     for (const auto& problem : problems)

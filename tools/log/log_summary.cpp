@@ -12,7 +12,9 @@ namespace {
 
 /// What one message says of itself; nothing if it can't be decoded.
 struct Decoded {
-  int64_t sequence = -1;  ///< -1: has none
+  int64_t sequence = -1;       ///< -1: has none
+  int64_t received_utime = 0;  ///< us since 1970, capture of the frame; 0 unknown
+  std::optional<service_health_t> health;
 };
 using Decoder = std::function<std::optional<Decoded>(std::span<const uint8_t>)>;
 
@@ -22,8 +24,11 @@ std::optional<Decoded> Decode(std::span<const uint8_t> bytes) try {
   M message;
   const int size = static_cast<int>(bytes.size());
   if (message.decode(bytes.data(), 0, size) != size) return std::nullopt;
-  if constexpr (requires { message.sequence; }) return Decoded{message.sequence};
-  return Decoded{};
+  Decoded decoded;
+  if constexpr (requires { message.sequence; }) decoded.sequence = message.sequence;
+  if constexpr (requires { message.received_utime; }) decoded.received_utime = message.received_utime;
+  if constexpr (std::is_same_v<M, service_health_t>) decoded.health = message;
+  return decoded;
 } catch (const std::exception&) {
   return std::nullopt;
 }
@@ -45,6 +50,11 @@ std::string WithoutStation(const std::string& channel) { return channel.substr(c
 
 }  // namespace
 
+double ChannelSummary::AgePercentile(double percent) const {
+  if (ages_ms.empty()) return 0;
+  return ages_ms[static_cast<size_t>(percent / 100 * static_cast<double>(ages_ms.size() - 1) + 0.5)];
+}
+
 LogSummary Summarise(LogReader& reader) {
   LogSummary summary;
   std::map<std::string, int64_t> sequences;
@@ -64,13 +74,19 @@ LogSummary Summarise(LogReader& reader) {
     const auto decoded = decoder->second(event->bytes);
     if (!decoded) {
       ++channel.undecodable;
-    } else if (decoded->sequence >= 0) {
+      continue;
+    }
+    if (decoded->received_utime > 0)
+      channel.ages_ms.push_back(static_cast<float>(event->utime - decoded->received_utime) / 1000);
+    if (decoded->health) summary.health[decoded->health->station + "/" + decoded->health->service] = *decoded->health;
+    if (decoded->sequence >= 0) {
       const auto [previous, fresh] = sequences.try_emplace(event->channel, decoded->sequence);
       // A smaller number is a camera service that was started again.
       if (!fresh && decoded->sequence > previous->second) channel.missing += decoded->sequence - previous->second - 1;
       previous->second = decoded->sequence;
     }
   }
+  for (auto& [name, channel] : summary.channels) std::sort(channel.ages_ms.begin(), channel.ages_ms.end());
   summary.seconds = static_cast<double>(last - first) / 1e6;
   summary.complete = reader.complete();
   return summary;

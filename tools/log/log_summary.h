@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/channels.h"
 #include "tools/log/log_file.h"
 
 namespace coach {
@@ -16,6 +17,9 @@ struct ChannelSummary {
   int64_t undecodable = 0;      ///< of a channel of ours; others are not looked into
   int64_t missing = 0;          ///< gaps in the frames' sequence numbers
   bool known = false;           ///< a channel of ours
+  std::vector<float> ages_ms;   ///< from a frame's capture (received_utime) to the recording; sorted; empty if unknown
+  /// Age that so many percent are younger than, ms; 0 if unknown.
+  double AgePercentile(double percent) const;
   double rate() const {
     return last > first ? 1e6 * static_cast<double>(events - 1) / static_cast<double>(last - first) : 0;
   }
@@ -23,6 +27,7 @@ struct ChannelSummary {
 
 struct LogSummary {
   std::map<std::string, ChannelSummary> channels;  ///< by name with the station's prefix
+  std::map<std::string, service_health_t> health;  ///< each service's last word, by station/service
   int64_t events = 0, bytes = 0;
   double seconds = 0;    ///< from the first event to the last
   bool complete = true;  ///< false: the file is cut off or damaged after what was counted

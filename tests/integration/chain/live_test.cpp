@@ -102,6 +102,34 @@ TEST_F(LiveChain, SurvivesTheDeathOfDetectorAndFilter) {
   EXPECT_TRUE(Answers(20));
 }
 
+TEST_F(LiveChain, ReasonerAndBridgeDieAndComeBack) {
+  const Process capture = Capture(), detector = Detector(), filter = Filter();
+  const auto start = [](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{Program("coach-" + name), "--station", "S", "--task",
+                                       (folder_ / "task.yaml").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Process(arguments);
+  };
+  const std::vector<std::string> log_robot{"--back-end", "log"};
+  std::optional<Process> reasoner(start("assembly-reasoner", {})), bridge(start("robot-bridge", log_robot));
+  ASSERT_TRUE(Listen(10, [&] { return health_.contains("assembly-reasoner") && health_.contains("robot-bridge"); }))
+      << reasoner->output() << bridge->output();
+  const int32_t old_reasoner = health_["assembly-reasoner"].pid, old_bridge = health_["robot-bridge"].pid;
+  reasoner->Signal(SIGKILL);
+  bridge->Signal(SIGKILL);
+  EXPECT_TRUE(Answers(20));
+  reasoner.emplace(start("assembly-reasoner", {}));
+  bridge.emplace(start("robot-bridge", log_robot));
+  EXPECT_TRUE(Listen(10, [&] {
+    return health_["assembly-reasoner"].pid != old_reasoner && health_["robot-bridge"].pid != old_bridge;
+  }));
+  EXPECT_TRUE(Answers(20));
+  for (Process* service : {&*reasoner, &*bridge}) {
+    service->Signal(SIGTERM);
+    EXPECT_EQ(service->Wait(1), 0) << service->output();
+  }
+}
+
 TEST_F(LiveChain, FollowsACameraThatWasStartedAgain) {
   const Process detector = Detector(), filter = Filter();
   std::optional<Process> capture(Capture("S", "100000000"));
