@@ -173,7 +173,7 @@ TEST(QiSessionTest, ReconnectsToARobotThatWasRestartedWithOtherIds) {
   const auto poll = [&] { session.Poll(SteadyNow()); };
   Until(0.1, poll, [] { return false; });
   server->Kill();
-  EXPECT_TRUE(Until(2, poll, [&] { return !session.connected(); }));
+  EXPECT_TRUE(Until(5, poll, [&] { return !session.connected() && !cut.ok; }));
   EXPECT_FALSE(cut.ok);
   EXPECT_THAT(cut.error, HasSubstr("lost"));
   server = std::make_unique<FakeQiServer>(std::vector<std::string>{"--seed", "2", "--port", port});
