@@ -81,9 +81,6 @@ void Node::HandleOperatorCommand(const operator_command_t& message) {
   if (std::find(operator_ids_.begin(), operator_ids_.end(), command.id) != operator_ids_.end()) return;
   operator_ids_[num_operator_commands_++ % operator_ids_.size()] = command.id;
   if (operator_handler_) operator_handler_(command);
-  if (command.kind != OperatorKind::kChooseTask || !options_.choose_task || lockstep()) return;
-  chosen_task_ = options_.choose_task(command.argument);
-  if (chosen_task_) Stop();
 }
 
 void Node::HandleHealth(const service_health_t& message) {
@@ -134,7 +131,6 @@ void Node::Run(const std::function<void()>& step) {
     if (!alive) break;
     if (!bus_->lockstep()) PublishByTheClock();
   }
-  if (chosen_task_) throw TaskChosen{*chosen_task_};
   NotifySystemd("STOPPING=1");
 }
 

@@ -3,10 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +13,6 @@
 #include "common/bus/service_statistics.h"
 
 namespace coach {
-
-/// Thrown by Node::Run(): the operator has chosen another task. ServiceMain starts the service anew with it.
-struct TaskChosen {
-  std::filesystem::path task;  ///< file
-};
 
 struct NodeOptions {
   std::string service;          ///< name in SERVICE_HEALTH: capture, detector, ...
@@ -30,9 +23,6 @@ struct NodeOptions {
   bool lockstep = false;        ///< keep wall time out of the output, as a recording as `url` does
   bool expects_frames = false;  ///< DEGRADED when no input came for 1 s
   int period_ms = 100;          ///< longest time between two calls of the step function
-  /// The file of the task that an operator's command names, nothing if it is the present one or there is none such.
-  /// Empty: the service does not depend on the task. ServiceMain fills it in.
-  std::function<std::optional<std::filesystem::path>(const std::string&)> choose_task;
 };
 
 /// Everything a service's main() needs of the bus. One thread; only Wake() and Stop() may be called from others (Stop()
@@ -90,7 +80,6 @@ class Node {
   /// Handles messages and calls `step` after each batch of them, after each Wake(), and at least every period_ms, until
   /// asked to stop or, in lockstep, until the recording ends. Exceptions from `step` are counted and logged like those
   /// of handlers. Says READY and WATCHDOG to systemd from this loop only: a step that hangs is a service that hangs.
-  /// @throws TaskChosen (not in lockstep) when NodeOptions::choose_task has named another task.
   void Run(const std::function<void()>& step);
   void Stop();  ///< Run() returns within one step
   void Wake();  ///< another thread has work for `step`
@@ -129,7 +118,6 @@ class Node {
   int64_t step_errors_ = 0, last_error_log_ = 0;
   RollingWindow recent_errors_;
   int64_t errors_seen_ = 0;
-  std::optional<std::filesystem::path> chosen_task_;
   std::string rival_;        ///< host and pid of another service of this name
   int64_t rival_heard_ = 0;  ///< us, steady clock
 };

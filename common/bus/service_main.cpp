@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/configuration/task_choice.h"
-
 namespace coach {
 namespace {
 
@@ -18,28 +16,6 @@ void LogToStandardError(const std::string& service) {
 int Fail(int code, const std::exception& e) {
   spdlog::critical("{}", e.what());
   return code;
-}
-
-/// The file of the task called `name`, if it is another than the station's present one.
-std::optional<std::filesystem::path> OtherTask(const Station& station, const std::string& name) try {
-  const std::filesystem::path file = TaskFileNamed(station, name);
-  return file == station.task ? std::nullopt : std::optional(file);
-} catch (const ConfigurationError& e) {
-  spdlog::warn("{}", e.what());
-  return std::nullopt;
-}
-
-/// Runs the service, and again from the start for every task that the operator chooses.
-void RunWithEveryTask(const ServiceContext& context, const std::function<void(ServiceContext&)>& run) {
-  for (std::filesystem::path task = context.station.task;;) try {
-      ServiceContext fresh = context;
-      fresh.station.task = task;
-      fresh.node.choose_task = [&station = fresh.station](const std::string& name) { return OtherTask(station, name); };
-      return run(fresh);
-    } catch (const TaskChosen& chosen) {
-      spdlog::info("task {}", chosen.task.string());
-      task = chosen.task;
-    }
 }
 
 }  // namespace
@@ -72,13 +48,13 @@ int ServiceMain(int argc, char** argv, const std::string& name, const std::strin
       throw ConfigurationError("--station: found '" + station.name + "', expected " + expected);
     if (!url.empty()) station.table_url = url;
     if (!robot_url.empty()) station.robot_url = robot_url;
-    station.task = task.empty() ? RememberedTask(station) : std::filesystem::absolute(task);
+    if (!task.empty()) station.task = std::filesystem::absolute(task);
     context.node.service = name;
     context.node.station = station.name;
     context.node.url = station.table_url;
     context.node.output_url = output_url;
     context.node.configuration = station.text;
-    RunWithEveryTask(context, run);
+    run(context);
     return 0;
   } catch (const ConfigurationError& e) {
     return Fail(2, e);

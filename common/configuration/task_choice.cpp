@@ -1,15 +1,8 @@
 #include "common/configuration/task_choice.h"
 
 #include <algorithm>
-#include <fstream>
 
 namespace coach {
-namespace {
-
-constexpr const char* kChoiceFile = "task";  // in the state folder
-
-}  // namespace
-
 std::vector<std::string> TaskNames(const Station& station) {
   std::vector<std::string> names;
   if (station.task.empty()) return names;
@@ -30,22 +23,6 @@ std::filesystem::path TaskFileNamed(const Station& station, const std::string& n
   for (const auto& known : names) offered += (offered.empty() ? "" : ", ") + known;
   throw ConfigurationError("there is no task '" + name + "' in " + station.task.parent_path().string() + ", only " +
                            (offered.empty() ? "none" : offered));
-}
-
-void RememberTask(const Station& station, const std::string& name) {
-  if (station.state_folder.empty()) return;
-  const std::filesystem::path file = station.state_folder / kChoiceFile, fresh = file.string() + ".new";
-  std::ofstream(fresh) << name << "\n";
-  std::error_code error;
-  std::filesystem::rename(fresh, file, error);
-}
-
-std::filesystem::path RememberedTask(const Station& station) {
-  std::ifstream in(station.state_folder / kChoiceFile);
-  std::string name;
-  if (station.state_folder.empty() || !std::getline(in, name)) return station.task;
-  const auto names = TaskNames(station);
-  return std::find(names.begin(), names.end(), name) == names.end() ? station.task : TaskFileNamed(station, name);
 }
 
 }  // namespace coach

@@ -221,8 +221,9 @@ std::string Lesson::Obey(const OperatorCommand& command, LessonOutput& out) {
   };
   switch (command.kind) {
     case OperatorKind::kChooseTask: {
-      const auto found =
-          std::find_if(tasks_.begin(), tasks_.end(), [&](const Task& t) { return t.name == command.argument; });
+      const auto found = std::find_if(tasks_.begin(), tasks_.end(), [&](const Task& t) {
+        return t.name == command.argument || t.file.stem() == command.argument;
+      });
       if (found == tasks_.end()) return "no task is called '" + command.argument + "'";
       Choose(static_cast<size_t>(found - tasks_.begin()));
       if (begun_) Begin(session_);

@@ -1,8 +1,12 @@
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "common/assembly/task_file.h"
 #include "common/bus/command_signature.h"
 #include "common/bus/service_main.h"
+#include "common/configuration/task_choice.h"
 #include "services/assembly_reasoner/assembly_reasoner_service.h"
 #include "services/assembly_reasoner/lesson_configuration.h"
 
@@ -10,7 +14,18 @@ namespace {
 
 using namespace coach;
 
-/// The station's task first, then those of the lesson; a file given twice counts once.
+/// Tasks of the station's folder that nobody asked for by name: one that can't be used is left out.
+void AddTasksBeside(const Station& station, std::vector<Task>& tasks) {
+  for (const auto& name : TaskNames(station)) try {
+      Task task = LoadTask(TaskFileNamed(station, name), {.read_meshes = false});
+      const bool known = std::any_of(tasks.begin(), tasks.end(), [&](const Task& t) { return t.name == task.name; });
+      if (!known) tasks.push_back(std::move(task));
+    } catch (const std::exception& e) {
+      spdlog::warn("left out: {}", e.what());
+    }
+}
+
+/// The station's task first, then those of the lesson, then those beside the station's; a file given twice counts once.
 std::vector<Task> LoadTasks(const Station& station, const LessonConfiguration& configuration) {
   std::vector<Task> tasks;
   std::vector<std::filesystem::path> files = configuration.tasks;
@@ -27,6 +42,7 @@ std::vector<Task> LoadTasks(const Station& station, const LessonConfiguration& c
     }
     if (!known) tasks.push_back(std::move(task));
   }
+  AddTasksBeside(station, tasks);
   return tasks;
 }
 

@@ -155,7 +155,6 @@ int main(int argc, char** argv) {
                               if (to_recording) context.node.url = "memq://";
                               context.node.lockstep = options.lockstep;
                               context.node.expects_frames = true;
-                              context.node.choose_task = nullptr;  // frames are the same for every task
                               coach::CaptureService(context.node, options, options.lockstep && !to_recording).Run();
                             });
 }

@@ -88,7 +88,6 @@ int main(int argc, char** argv) {
         const coach::HsvDetectorOptions options = coach::ReadOptions(station.Section("detector"));
         if (station.task.empty()) throw coach::ConfigurationError("no task: give task in the station file, or --task");
         context.node.expects_frames = true;
-        context.node.choose_task = nullptr;  // follows TASK, which a restart or a recording has too
         coach::DetectorService(context.node, station, coach::LoadTask(station.task), options).Run();
       });
 }

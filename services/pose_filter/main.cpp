@@ -32,7 +32,6 @@ void RunFilter(ServiceContext& context) {
   PoseFilterServiceOptions options;
   if (!station.state_folder.empty()) options.state_file = station.state_folder / "pose-filter.json";
   context.node.expects_frames = true;
-  context.node.choose_task = nullptr;  // follows TASK, which a restart or a recording has too
   PoseFilterService service(context.node, task, make_filter, options);
   const TaskFollower follower(service.node(), station, task.sha256, [&](const Task& other) { service.SetTask(other); });
   service.Run();

@@ -68,7 +68,6 @@ void Run(const ServiceContext& context, const RecorderOptions& options) {
   Recorder recorder(options);
   NodeOptions node_options = context.node;
   node_options.period_ms = 1000;
-  node_options.choose_task = nullptr;  // a lesson is recorded whatever is built
   Node node(node_options);
   Listener listener(context.station.table_url, context.station.name, recorder);
   spdlog::info("recording to {}, {} pictures", options.folder.string(), options.images ? "with" : "without");

@@ -6,7 +6,8 @@
 namespace coach {
 namespace {
 
-constexpr size_t kMaxWaiting = 8;          // pictures
+constexpr size_t kMaxWaiting = 30;         // pictures; at 30 Hz the tracker's delay may be a second
+constexpr int64_t kFirstPoses = 200'000;   // us of pictures before those without poses are shown
 constexpr int64_t kRestarted = 2'000'000;  // us; time that runs back by more is a new recording
 
 bool Drawn(const PartEstimate& part) {
@@ -41,24 +42,24 @@ void Lesson::OnTask(std::shared_ptr<const TaskView> task) {
 
 void Lesson::OnPicture(Picture picture) {
   auto shared = std::make_shared<const Picture>(std::move(picture));
-  std::shared_ptr<const Picture> overdue;
   {
     const std::lock_guard lock(mutex_);
     if (!waiting_.empty() && shared->utime < waiting_.back()->utime) waiting_.clear();
     waiting_.push_back(shared);
-    while (waiting_.size() > 1 &&
-           (waiting_.size() > kMaxWaiting || shared->utime - waiting_.front()->utime > options_.pose_patience_us)) {
-      overdue = waiting_.front();
-      waiting_.pop_front();
-    }
+    while (waiting_.size() > kMaxWaiting) waiting_.pop_front();
+    // Pictures that a busy tracker leaves out are left out here too: outlines that come and go disturb the eye.
+    const int64_t silent = shared->utime - poses_utime_;
+    if (poses_utime_ != 0 && silent > -kRestarted && silent < options_.pose_patience_us) return;
+    if (poses_utime_ == 0 && shared->utime - waiting_.front()->utime < kFirstPoses) return;
   }
-  if (overdue) Show(overdue, nullptr);
+  Show(shared, nullptr);
 }
 
 void Lesson::OnPoses(const PartPoses& poses) {
   std::shared_ptr<const Picture> picture;
   {
     const std::lock_guard lock(mutex_);
+    poses_utime_ = poses.utime;
     const auto match =
         std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& p) { return p->utime == poses.utime; });
     if (match != waiting_.end()) {

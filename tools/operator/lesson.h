@@ -74,10 +74,11 @@ struct TaskView {
 class Lesson {
  public:
   struct Options {
-    double picture_rate = 15;            ///< Hz; views made at most
-    int64_t pose_patience_us = 250'000;  ///< a picture waits this long (in the data's time) for its poses
-    size_t max_events = 2000;            ///< of the timeline
-    size_t max_acts = 40;                ///< of the robot's words
+    double picture_rate = 15;  ///< Hz; views made at most
+    int64_t pose_patience_us =
+        1'000'000;             ///< pictures without poses are shown when none came for so long (data's time)
+    size_t max_events = 2000;  ///< of the timeline
+    size_t max_acts = 40;      ///< of the robot's words
   };
   explicit Lesson(const Options& options);
 
@@ -137,7 +138,7 @@ class Lesson {
   std::map<int64_t, GuidanceEvent> events_;             // by id
   std::deque<std::shared_ptr<const Picture>> waiting_;  // pictures whose poses have not come yet, oldest first
   std::shared_ptr<const LiveView> view_;
-  int64_t shown_utime_ = 0;
+  int64_t shown_utime_ = 0, poses_utime_ = 0;  // us, data's time
 };
 
 }  // namespace coach

@@ -96,7 +96,6 @@ class OperatorService {
  private:
   static NodeOptions WithPeriod(NodeOptions options) {
     options.period_ms = kPeriodMs;
-    options.choose_task = nullptr;  // TASK says when the services have changed over
     return options;
   }
 
@@ -145,7 +144,6 @@ class OperatorService {
   void Step() {
     for (const auto& command : outbox_.Due(WallTime())) {
       const auto message = ToMessage(command);
-      if (command.kind == OperatorKind::kChooseTask) RememberTask(station_, command.argument);
       node_.Publish(message);
       if (command.kind == OperatorKind::kStop && robot_bus_) robot_bus_->Publish(message);
     }

@@ -72,6 +72,13 @@ class UnitsTest(unittest.TestCase):
         for unit, program in programs().items():
             self.assertTrue((PROGRAMS / program).exists(), f"{unit}: {PROGRAMS / program}")
 
+    def test_the_example_station_names_no_key_that_a_service_does_not_know(self):
+        station = UNITS.parent / "station.yaml"
+        # Without a network every program ends with 4, "bus unusable"; a mistake in the file would be 2.
+        for program in ("coach-capture", "coach-operator", "coach-record"):
+            done = subprocess.run([PROGRAMS / program, "--config", station, "--lcm-url", "udpm://0.0.0.0:1"], capture_output=True, text=True, timeout=20)
+            self.assertEqual(done.returncode, 4, done.stderr)
+
     def test_the_camera_keeps_its_devices_though_the_shared_rules_take_them(self):
         code, text = self.analyze("cat-config", "systemd/system/coach-capture@.service.d/60-camera.conf")
         self.assertEqual(code, 0, text)

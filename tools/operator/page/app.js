@@ -77,10 +77,10 @@ function showHeadline(state, task) {
 function showChoices(state) {
   const chosen = (select, values, value, label) => {
     const all = value && !values.includes(value) ? [value, ...values] : values;
-    rebuild(select, [all, pageLanguage()], () => all.map((item) => element('option', {value: item}, label(item))));
+    rebuild(select, [all, pageLanguage(), state.task.name], () => all.map((item) => element('option', {value: item}, label(item))));
     if (document.activeElement !== select && value) select.value = value;
   };
-  chosen(byId('task'), state.tasks, state.task.choice, readable);
+  chosen(byId('task'), state.tasks, state.task.choice, (file) => readable(file === state.task.choice ? state.task.name : file));
   chosen(byId('language'), state.languages, state.robot.language, (code) => wordsOf(pageLanguage()).language_name[code] ?? code);
 }
 

@@ -2,10 +2,11 @@
 import {byId} from './dom.js';
 import {colourOf, components} from './colours.js';
 
+const HAND = 0.07;  // m
 const TRACKED = 0, OCCLUDED = 1, LOST = 3, ABSENT = 4;
 const canvas = byId('table-canvas');
 const gl = canvas.getContext('webgl', {antialias: true, alpha: false});
-const eye = {turn: -0.5, tilt: 0.75, distance: 0.85};
+const eye = {turn: -0.5, tilt: 0.75, distance: 0.7};
 const scene = {task: null, meshes: [], view: null, target: null};
 let program, places, sphere, disc, ground, pending = false, middle = [0, 0, 0];
 
@@ -101,7 +102,10 @@ function render() {
       paint(scene.meshes[type], poseMatrix(part.pose), [...components(colourOf(scene.task.types[type])), alpha], 1, gl.TRIANGLES);
     });
   }
-  for (const [x, y, z, radius] of scene.view?.foreign ?? []) paint(sphere, translation(x, y, z, radius), [0.85, 0.62, 0.5, 0.35], 1, gl.TRIANGLES);
+  // Hands are a hint behind which the parts stay visible; an arm or a body is no larger than a hand here.
+  gl.depthMask(false);
+  for (const [x, y, z, radius] of scene.view?.foreign ?? []) paint(sphere, translation(x, y, z, Math.min(radius, HAND)), [0.85, 0.62, 0.5, 0.25], 1, gl.TRIANGLES);
+  gl.depthMask(true);
   if (scene.target) paint(disc, translation(scene.target[0], scene.target[1], scene.target[2] + 0.03, 0.035), [0.11, 0.37, 0.72, 1], 0, gl.TRIANGLES);
 }
 

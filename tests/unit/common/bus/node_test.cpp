@@ -123,32 +123,6 @@ TEST(Node, OperatorCommandsAreHandledOnceAndEchoed) {
   EXPECT_EQ(node.Health().decode_errors, 1);
 }
 
-TEST(Node, AnotherTaskEndsTheRunThePresentOneDoesNot) {
-  NodeOptions options = Options();
-  options.choose_task = [](const std::string& name) {
-    return name == "other" ? std::optional<std::filesystem::path>("/tasks/other.yaml") : std::nullopt;
-  };
-  const auto choose = [](Node& node, int64_t id, const std::string& name) {
-    operator_command_t command = Command(id);
-    command.kind = operator_command_t::CHOOSE_TASK;
-    command.argument = name;
-    node.Publish(command);
-  };
-  {
-    Node node(options);
-    choose(node, 1, "present");
-    EXPECT_NO_THROW(RunSteps(node, 2));
-  }
-  Node second(options);
-  choose(second, 2, "other");
-  try {
-    RunSteps(second, 5);
-    FAIL() << "the run went on";
-  } catch (const TaskChosen& chosen) {
-    EXPECT_EQ(chosen.task, "/tasks/other.yaml");
-  }
-}
-
 TEST(Node, AFailingStepIsCountedAndDoesNotEndTheService) {
   Node node(Options());
   int steps = 0;

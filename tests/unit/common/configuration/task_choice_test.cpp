@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace coach {
 namespace {
@@ -24,20 +23,6 @@ TEST(TaskChoice, WhatIsNotThereIsOneClearError) {
   }
   EXPECT_TRUE(TaskNames(DefaultStation()).empty());
   EXPECT_THROW(TaskFileNamed(DefaultStation(), "square"), ConfigurationError);
-}
-
-TEST(TaskChoice, TheChoiceIsRememberedAndABrokenMemoryIsNoHarm) {
-  Station station = WithTasks();
-  EXPECT_EQ(RememberedTask(station), station.task) << "without a state folder";
-  RememberTask(station, "rectangle_long_short");
-  station.state_folder = std::filesystem::temp_directory_path() / ("task_choice_test" + std::to_string(getpid()));
-  std::filesystem::create_directories(station.state_folder);
-  EXPECT_EQ(RememberedTask(station), station.task);
-  RememberTask(station, "rectangle_long_short");
-  EXPECT_EQ(RememberedTask(station).filename(), "rectangle_long_short.yaml");
-  RememberTask(station, "../gone");
-  EXPECT_EQ(RememberedTask(station), station.task);
-  std::filesystem::remove_all(station.state_folder);
 }
 
 }  // namespace
