@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/core/mat.hpp>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/assembly/task.h"
@@ -16,9 +18,9 @@ namespace coach {
 /// Blue and green in OpenCV's order, and the ranges that hold them.
 inline const cv::Vec3b kTestBlue{150, 60, 30}, kTestGreen{40, 120, 30}, kTestTable{120, 140, 150};
 
-inline PartType TestType(const char* name, const TriangleMesh& mesh, bool blue, int count) {
+inline PartType TestType(std::string name, const TriangleMesh& mesh, bool blue, int count) {
   PartType type;
-  type.name = name;
+  type.name = std::move(name);
   type.count = count;
   type.mesh = mesh;
   type.hsv = blue ? HsvRange{{104, 120, 40}, {124, 255, 255}} : HsvRange{{45, 80, 40}, {75, 255, 255}};
@@ -74,14 +76,15 @@ inline Pose TestTable() {
 
 /// Draws the table and the parts with the sensor noise of tracking.md times `noise`.
 /// @param occluder m, a wall at this depth over the columns [left, right); left == right: none
+/// @param table X_CT, where the camera sees the table
 inline TestPicture DrawScene(const Task& task, const std::vector<Pose>& X_CP, uint64_t seed, double noise = 1,
-                             int left = 0, int right = 0, double occluder = 0.4) {
+                             int left = 0, int right = 0, double occluder = 0.4, const Pose& table = TestTable()) {
   TestPicture picture{TestCamera(), cv::Mat(480, 640, CV_16UC1, cv::Scalar(0)), cv::Mat(480, 640, CV_8UC3)};
   const PixelGrid grid = SampledGrid(picture.camera, 1);
   RenderedDepth scene, tile;
   scene.Reset({0, 0, 640, 480});
   cv::Mat owner(480, 640, CV_32SC1, cv::Scalar(-1));
-  Pose X_CT = TestTable();
+  Pose X_CT = table;
   X_CT.translation() -= 0.01 * X_CT.linear().col(2);
   RenderDepth(RenderMesh(BoxMesh({1.2, 0.8, 0.02})), grid, X_CT, tile);
   MergeNearer(tile, scene);
