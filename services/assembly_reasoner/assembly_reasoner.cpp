@@ -382,7 +382,9 @@ bool AssemblyReasoner::IsTurned(const BelievedJoint& joint) const {
   const auto turn = [&](const ContactClass& right, const ContactTemplate& wrong) {
     // Turned about its long axis the part meets the other at the same place.
     const Vector3 p = right.templates[0].X_AB.translation(), q = wrong.X_AB.translation();
-    return std::abs(p.x() - q.x()) < kSamePlace && std::abs(std::abs(p.y()) - std::abs(q.y())) < kSamePlace &&
+    const bool upside_down = right.templates[0].X_AB.linear().col(2).dot(wrong.X_AB.linear().col(2)) < -0.5;
+    return upside_down && std::abs(p.x() - q.x()) < kSamePlace &&
+           std::abs(std::abs(p.y()) - std::abs(q.y())) < kSamePlace &&
            std::abs(std::abs(p.z()) - std::abs(q.z())) < kSamePlace;
   };
   for (const ContactClass& right : classes) {

@@ -248,6 +248,7 @@ std::string Lesson::Obey(const OperatorCommand& command, LessonOutput& out) {
     case OperatorKind::kSkip:
       if (!running || policy_.step() < 0) return "no step is asked for";
       skipped_.push_back(policy_.step());
+      policy_.AnnounceAgain();
       say("skipped", "");
       return "";
     case OperatorKind::kMarkDone:

@@ -62,9 +62,10 @@ void ReadResponses(const YamlNode& node, ResponseOptions& o) {
   number("moving_speed", o.moving_speed, 0.005, 1);
   number("still_time", o.still_time, 0, 10);
   if (const auto idle = node.Find("idle")) {
-    o.idle = idle->As<std::vector<double>>();
-    const bool rising = std::is_sorted(o.idle.begin(), o.idle.end()) && o.idle.size() == 4 && o.idle[0] > 0;
+    const auto seconds = idle->As<std::vector<double>>();
+    const bool rising = seconds.size() == 4 && seconds[0] > 0 && std::is_sorted(seconds.begin(), seconds.end());
     if (!rising) idle->Fail("four rising numbers of seconds");
+    std::copy(seconds.begin(), seconds.end(), o.idle.begin());
   }
   node.RejectUnknownKeys();
 }

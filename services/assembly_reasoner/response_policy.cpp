@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numbers>
 
 namespace coach {
@@ -53,6 +54,7 @@ void ResponsePolicy::Begin(int64_t now) {
   begun_ = true;
   introduced_ = false;
   step_ = -1;
+  made_before_ = 0;
   to_praise_.clear();
   corrections_.clear();
   corrections_said_.clear();
@@ -154,10 +156,11 @@ void ResponsePolicy::Praise(const LessonView& view) {
       ++it;
       continue;
     }
-    const bool last = NextConnection(view.reasoner->task(), view.reasoner->placement(), {}) < 0;
-    ToPhase(Phase::kCorrect, "a right connection");
-    if (!last)
+    // The last one is celebrated, not praised.
+    if (NextConnection(view.reasoner->task(), view.reasoner->placement(), view.skipped) >= 0) {
+      ToPhase(Phase::kCorrect, "a right connection");
       Offer("praise", Priority::kCongratulatory, true, joint->connection, joint->part_a, joint->part_b, view.now);
+    }
     it = to_praise_.erase(it);
   }
 }
@@ -257,7 +260,7 @@ void ResponsePolicy::Advance(const LessonView& view) {
   const int next = NextConnection(view.reasoner->task(), view.reasoner->placement(), view.skipped);
   if (next < 0) {
     step_ = -1;
-    if (phase_ == Phase::kComplete) return;
+    if (phase_ == Phase::kComplete || !to_praise_.empty()) return;
     ToPhase(Phase::kComplete, "every connection is made");
     Offer("complete", Priority::kCongratulatory, true, -1, -1, -1, view.now);
     return;
@@ -265,8 +268,11 @@ void ResponsePolicy::Advance(const LessonView& view) {
   if (phase_ == Phase::kComplete) ToPhase(Phase::kWait, "a connection came apart");
   if (next != step_) {
     // A step that comes back because something came apart is not announced: no nagging. The hints remind of it.
-    const bool progress = phase_ == Phase::kCorrect || step_ < 0 || phase_ == Phase::kAnnounce;
+    const auto& joints = view.reasoner->joints();
+    const auto made = std::count_if(joints.begin(), joints.end(), [](const auto& j) { return j.connection >= 0; });
+    const bool progress = made > made_before_ || phase_ == Phase::kAnnounce;
     step_ = next;
+    made_before_ = made;
     if (progress && phase_ != Phase::kIntroduction) ToPhase(Phase::kAnnounce, "the next step");
   } else if (phase_ == Phase::kCorrect) {
     ToPhase(announced_ ? Phase::kWait : Phase::kAnnounce, "on with the step");
@@ -274,7 +280,9 @@ void ResponsePolicy::Advance(const LessonView& view) {
   if (phase_ == Phase::kIntroduction && introduced_ && !speech_.speaking(view.now))
     ToPhase(Phase::kAnnounce, "introduced");
   if (phase_ != Phase::kAnnounce) return;
-  if (!announced_) OfferStep("step", Priority::kExplanatory, false, view);
+  // First the praise for what was made, then what comes next.
+  const bool praise_first = !to_praise_.empty() || speech_.Waits("praise");
+  if (!announced_ && !praise_first) OfferStep("step", Priority::kExplanatory, false, view);
   if (announced_ && !speech_.speaking(view.now)) ToPhase(Phase::kWait, "announced");
 }
 
@@ -375,6 +383,7 @@ PolicyMemory ResponsePolicy::Save() const { return {phase_, idle_level_, correct
 
 void ResponsePolicy::Restore(const PolicyMemory& memory) {
   begun_ = introduced_ = announced_ = true;
+  made_before_ = std::numeric_limits<std::ptrdiff_t>::max();  // nothing is announced again
   paused_phase_ = Phase::kWait;
   phase_ = memory.phase == Phase::kPaused || memory.phase == Phase::kComplete ? memory.phase : Phase::kWait;
   idle_level_ = phase_ == Phase::kWait ? memory.idle_level : 0;

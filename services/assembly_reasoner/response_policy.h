@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -17,23 +18,23 @@
 namespace coach {
 
 struct ResponseOptions {
-  double praise_probability = 0.7;            ///< of a right connection, to praise it
-  double praise_hold = 0.5;                   ///< s it has to last
-  double correct_probability = 0.85;          ///< of a wrong connection, to correct it
-  double correct_hold = 2.0;                  ///< s it has to last, the parts being still
-  double correct_margin = 0.2;                ///< above every right reading of the same two parts
-  double correct_gap = 12;                    ///< s between two sayings of the same correction
-  int correct_times = 3;                      ///< then the whole help once, then silence
-  double hedge_low = 0.35;                    ///< probability of a right or wrong connection from which on ..
-  double hedge_hold = 5.0;                    ///< s .. in doubt the child is asked to look once more
-  double hedge_gap = 30;                      ///< s between two of these
-  std::vector<double> idle{25, 45, 70, 100};  ///< s without movement after the last utterance, of hints 1 to 4
-  double away = 90;                           ///< s without movement after the last hint until nobody seems to be there
-  double lost = 3;                            ///< s that most parts can't be seen before it is said
-  double lost_gap = 60;                       ///< s between two sayings of it
-  double repair_window = 15;                  ///< s after a correction in which it is taken back if it was wrong
-  double moving_speed = 0.05;                 ///< m/s from which on a part or a hand counts as moving
-  double still_time = 0.7;                    ///< s without movement after which parts are still
+  double praise_probability = 0.7;              ///< of a right connection, to praise it
+  double praise_hold = 0.5;                     ///< s it has to last
+  double correct_probability = 0.85;            ///< of a wrong connection, to correct it
+  double correct_hold = 2.0;                    ///< s it has to last, the parts being still
+  double correct_margin = 0.2;                  ///< above every right reading of the same two parts
+  double correct_gap = 12;                      ///< s between two sayings of the same correction
+  int correct_times = 3;                        ///< then the whole help once, then silence
+  double hedge_low = 0.35;                      ///< probability of a right or wrong connection from which on ..
+  double hedge_hold = 5.0;                      ///< s .. in doubt the child is asked to look once more
+  double hedge_gap = 30;                        ///< s between two of these
+  std::array<double, 4> idle{25, 45, 70, 100};  ///< s without movement after the last utterance, of hints 1 to 4
+  double away = 90;            ///< s without movement after the last hint until nobody seems to be there
+  double lost = 3;             ///< s that most parts can't be seen before it is said
+  double lost_gap = 60;        ///< s between two sayings of it
+  double repair_window = 15;   ///< s after a correction in which it is taken back if it was wrong
+  double moving_speed = 0.05;  ///< m/s from which on a part or a hand counts as moving
+  double still_time = 0.7;     ///< s without movement after which parts are still
 };
 
 /// What the policy looks at.
@@ -112,6 +113,7 @@ class ResponsePolicy {
   SpeechQueue& speech_;
   Phase phase_ = Phase::kIntroduction, paused_phase_ = Phase::kWait;
   bool begun_ = false, introduced_ = false, announced_ = false, help_ = false;
+  std::ptrdiff_t made_before_ = 0;  // connections made when the present step began
   int step_ = -1, idle_level_ = 0, repairs_ = 0;
   int64_t now_ = 0, last_movement_ = 0, quiet_ = 0, last_step_ = 0, hidden_since_ = 0, last_lost_ = 0, doubt_since_ = 0,
           last_hedge_ = 0;

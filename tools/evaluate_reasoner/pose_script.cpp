@@ -117,6 +117,7 @@ class Stage {
   }
 
   void Play(const ScriptAction& action) {
+    Wait(action.pause);
     switch (action.kind) {
       case ScriptAction::Kind::kConnect:
         return Join(action, false);

@@ -29,6 +29,7 @@ struct ScriptAction {
   double gap = 0;              ///< m, of a near miss
   bool hidden = false;         ///< both parts are covered from 0.6 s before the moment to 0.5 s after
   bool carried = false;        ///< afterwards the whole is carried 60 mm
+  double pause = 0;            ///< s in which nothing happens, before it
 };
 
 struct TrueEvent {

@@ -1,0 +1,120 @@
+#include "services/assembly_reasoner/connection_model.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "common/assembly/connection_probability.h"
+#include "common/assembly/task_file.h"
+
+namespace coach {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+TEST(PaperConnectionProbability, ByHand) {
+  EXPECT_DOUBLE_EQ(DistanceProbability({0, 0, 0}, {0.03, 0, 0}), 1);
+  EXPECT_NEAR(DistanceProbability({0, 0, 0}, {0.06, 0, 0}), 0.5, 1e-12);
+  EXPECT_DOUBLE_EQ(DistanceProbability({0, 0, 0}, {0, 0.09, 0}), 0);
+}
+
+TEST(PaperConnectionProbability, WhatItCanNotSee) {
+  Pose X = Pose::Identity();
+  X.linear() = ExpRotation({0, 0, 90 * kDegree});
+  X.translation() = Vector3(0.075, 0.045, 0);
+  Pose turned = X;
+  turned.linear() = ExpRotation({0, 0, 20 * kDegree}) * X.linear();
+  EXPECT_DOUBLE_EQ(PaperConnectionProbability(X, turned), 1);
+  Pose apart = X;
+  apart.translation().y() += 0.04;
+  EXPECT_NEAR(PaperConnectionProbability(X, apart), 1, 1e-9);
+  Pose rolled = X;  // A about its long axis: B in A's frame goes to the other side
+  rolled.translation().y() -= 0.09;
+  EXPECT_LE(PaperConnectionProbability(X, rolled), 0.5);
+}
+
+class CoachModel : public testing::Test {
+ protected:
+  CoachModel()
+      : task_(LoadTask(std::string(COACH_SOURCE_DIR) + "/deploy/tasks/rectangle_long_medium.yaml")),
+        contacts_(task_),
+        model_(MakeCoachConnectionModel(task_, contacts_)) {}
+
+  /// Judges parts 0 (long) and 2 (medium) held for `seconds` at `gap` from the corner's pose.
+  PairVerdict Hold(const Pose& X_AB, double seconds, double deviation, double visible = 1, bool pairs = true) {
+    std::normal_distribution<double> noise(0, deviation);
+    PairVerdict verdict;
+    for (int i = 0; i < static_cast<int>(seconds * 30); ++i) {
+      utime_ += 33333;
+      PartEstimate a, b;
+      a.status = b.status = PartStatus::kTracked;
+      a.visible_fraction = b.visible_fraction = visible;
+      a.X_TP.translation().z() = noise(random_);
+      PairEvidence pair;
+      Vector6 xi;
+      for (int k = 0; k < 6; ++k) xi[k] = (k < 3 ? 1 : 10) * noise(random_);
+      pair.X_AB = Perturb(X_AB, xi);
+      pair.covariance.setZero();
+      pair.covariance.diagonal() << Vector3::Constant(deviation * deviation),
+          Vector3::Constant(100 * deviation * deviation);
+      b.X_TP = a.X_TP * pair.X_AB;
+      pair.part_b = 2;
+      pair.surface_distance = 0.01;
+      verdict = model_->Judge({utime_, 0, 2, &a, &b, pairs ? &pair : nullptr});
+    }
+    return verdict;
+  }
+  Pose Corner(double gap_x = 0, double angle = 0) const {
+    Pose X = task_.connections[0].X_AB;
+    X.translation().x() += gap_x;
+    X.linear() = ExpRotation({0, 0, angle}) * X.linear();
+    return X;
+  }
+
+  Task task_;
+  ContactTable contacts_;
+  std::unique_ptr<ConnectionModel> model_;
+  int64_t utime_ = 0;
+  std::mt19937_64 random_{3};
+};
+
+TEST_F(CoachModel, TellsMadeFromNear) {
+  EXPECT_GT(Hold(Corner(), 1, 0.001).log_odds[0], 3);
+  EXPECT_LT(Hold(Corner(0.005), 2, 0.001).log_odds[0], 0);
+  EXPECT_LT(Hold(Corner(0.010), 2, 0.001).log_odds[0], -4);
+  EXPECT_LT(Hold(Corner(0, 12 * kDegree), 2, 0.001).log_odds[0], -4);
+}
+
+TEST_F(CoachModel, TellsTheCornerFromItsMirrorImage) {
+  const PairVerdict verdict = Hold(Corner(), 1, 0.001);
+  EXPECT_LT(verdict.log_odds[1], -8);
+  EXPECT_LT(verdict.log_odds[2], -8);
+}
+
+TEST_F(CoachModel, NoiseMakesItSlowNotWrong) {
+  const double at_once = Hold(Corner(), 0.2, 0.005).log_odds[0];
+  EXPECT_GT(Hold(Corner(), 2, 0.005).log_odds[0], at_once);
+}
+
+TEST_F(CoachModel, NoEvidenceNoClaim) {
+  EXPECT_FALSE(Hold(Corner(), 1, 0.001, 0.03).has_evidence);
+  // Poses without pairs may stem from an enforced connection: they say nothing near a joint, and 'apart' far from it.
+  EXPECT_FALSE(Hold(Corner(), 1, 0.001, 1, false).has_evidence);
+  const PairVerdict far = Hold(Corner(0.1), 1, 0.001, 1, false);
+  ASSERT_TRUE(far.has_evidence);
+  EXPECT_LT(far.log_odds[0], -8);
+}
+
+TEST_F(CoachModel, DatesTheArrivalBack) {
+  Hold(Corner(0.05), 1, 0.0005);
+  const int64_t moment = utime_;
+  Hold(Corner(), 0.8, 0.0005);
+  EXPECT_NEAR(static_cast<double>(model_->ChangeTime(0, 2, 0, -1, utime_) - moment), 0, 100000);
+  const int64_t left = utime_;
+  Hold(Corner(0.03), 0.5, 0.0005);
+  EXPECT_NEAR(static_cast<double>(model_->ChangeTime(0, 2, -1, 0, utime_) - left), 0, 100000);
+}
+
+}  // namespace
+}  // namespace coach
