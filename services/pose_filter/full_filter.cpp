@@ -228,7 +228,8 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
     Coast(PartStatus::kOutOfView, dt, options_.track, track);
   } else if (open < options_.track.least_open) {
     Coast(PartStatus::kOccluded, dt, options_.track, track);
-  } else if (best.score.agreement() >= options_.track.least_agreement) {
+  } else if (best.score.agreement() >= options_.track.least_agreement &&
+             (track.moving || InReach(camera_.X_TC() * best.X_CP.translation()))) {
     Fuse(best, camera_.X_TC(), dt, options_.track, track);
   } else {
     const int bad = track.bad + 1;
@@ -372,13 +373,16 @@ std::optional<Pose> FullFilter::CarriedBy(int part, Matrix6& covariance) const {
   return best;
 }
 
-bool FullFilter::Plausible(int part, const PoseCandidate& found) const {
+bool FullFilter::InReach(const Vector3& p_T) const { return p_T.z() > -0.10 && p_T.z() < 0.80 && area_.Over(p_T); }
+
+bool FullFilter::Plausible(int part, const PoseCandidate& found, bool distractor) const {
   // A part that lay still when something moved in front of it is most likely still there: to be found elsewhere it must
-  // be seen well.
+  // be seen well. So must one in the place of a distractor.
+  if (!InReach(camera_.X_TC() * found.X_CP.translation())) return false;
   const Track& track = tracks_[part];
   const bool at_rest =
       (track.status == PartStatus::kOccluded || track.status == PartStatus::kOutOfView) && !track.carried;
-  if (!at_rest) return true;
+  if (!at_rest && !distractor) return true;
   return found.score.agreement() > 0.8 && found.outline_support() > 0.85 &&
          found.score.open() > 0.5 * found.full_samples;
 }
@@ -401,8 +405,12 @@ void FullFilter::Recover(const Observation& observation) {
     int best_part = -1;
     PoseCandidate best;
     double best_gain = options_.relocation_gain;
-    for (const Blob& blob : blobs) {
-      if (distractors_.Known(blob, camera_.X_TC())) continue;
+    // Another blob comes first in every frame, so that each has its turn however many there are.
+    for (size_t b = 0; b < blobs.size(); ++b) {
+      const Blob& blob = blobs[(b + static_cast<size_t>(steps_)) % blobs.size()];
+      // What was taken for a distractor is looked at now and then: a part may have been mistaken for it.
+      const bool distractor = distractors_.Known(blob, camera_.X_TC());
+      if (distractor && steps_ % 8 != 0) continue;
       std::vector<int> tried_types;
       for (size_t k = 0; k < tracks_.size() && left > 0; ++k) {
         if (!tracks_[k].missing() || class_of_part_[k] != blob.colour_class) continue;
@@ -416,7 +424,8 @@ void FullFilter::Recover(const Observation& observation) {
         const auto found = SearchPose(ShapeOf(static_cast<int>(k)).model, ShapeOf(static_cast<int>(k)).search_points,
                                       observation, owners_, static_cast<int>(k), bit_of_part_[k], blob, camera_.X_TC(),
                                       options_.search, former ? &*former : nullptr, scratch_);
-        if (!found || found->score.log_likelihood <= best_gain || !Plausible(static_cast<int>(k), *found)) continue;
+        if (!found || found->score.log_likelihood <= best_gain || !Plausible(static_cast<int>(k), *found, distractor))
+          continue;
         best_gain = found->score.log_likelihood;
         best = *found;
         best_part = static_cast<int>(k);

@@ -81,7 +81,10 @@ class FullFilter final : public PoseFilter {
   void UpdateTrack(int part, const Observation& observation, double dt);
   std::optional<Pose> BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest,
                                    const Pose& refined, double dt);
-  bool Plausible(int part, const PoseCandidate& found) const;
+  /// Over the table or beside it, at a height that a child can reach: what lies still elsewhere is no part of the
+  /// lesson.
+  bool InReach(const Vector3& p_T) const;
+  bool Plausible(int part, const PoseCandidate& found, bool distractor) const;
   void Recover(const Observation& observation);
   void Place(int part, const Observation& observation);
   PartPoses Output(const FilterInput& input);
