@@ -60,7 +60,7 @@ void EveryOrder(const std::string& name, int stride) {
 
 TEST(AssemblyReasoner, EveryOrderAndAssignmentOfTheRectangle) { EveryOrder("rectangle_long_medium", 3); }
 TEST(AssemblyReasoner, ManyOrdersOfTheSquare) { EveryOrder("square", 200); }
-TEST(AssemblyReasoner, ManyOrdersOfTheCar) { EveryOrder("car", 250); }
+TEST(AssemblyReasoner, ManyOrdersOfTheCar) { EveryOrder("car", 120); }
 
 TEST(AssemblyReasoner, EveryListedMistakeIsFoundAndItsUndoing) {
   for (const char* name : {"rectangle_long_short", "square", "car"}) {

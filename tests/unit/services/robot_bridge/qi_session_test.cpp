@@ -65,6 +65,9 @@ TEST(QiSessionTest, HangingCallTimesOutAndAFailingOneTellsWhy) {
   ASSERT_TRUE(Connect(session));
   server.Order("hang ALMotion.rest");
   server.Order("fail ALMotion.killAll");
+  // Orders reach the server by another way than calls: give them time.
+  Until(
+      0.3, [&] { session.Poll(SteadyNow()); }, [] { return false; });
   EXPECT_THAT(CallAndWait(session, "ALMotion", "rest", {}).error, HasSubstr("no answer within 1000 ms"));
   EXPECT_EQ(CallAndWait(session, "ALMotion", "killAll", {}).error, "ALMotion.killAll has failed");
   EXPECT_TRUE(CallAndWait(session, "ALSystem", "systemVersion", {}).ok);
@@ -168,9 +171,10 @@ TEST(QiSessionTest, ReconnectsToARobotThatWasRestartedWithOtherIds) {
   EXPECT_TRUE(CallAndWait(session, "ALMotion", "rest", {}).ok);
   const int64_t generation = session.generation();
   server->Order("hang ALMotion.rest");
+  const auto poll = [&] { session.Poll(SteadyNow()); };
+  Until(0.3, poll, [] { return false; });
   Result cut{true, {}, ""};
   session.Call("ALMotion", "rest", {}, [&](const Result& got) { cut = got; });
-  const auto poll = [&] { session.Poll(SteadyNow()); };
   Until(0.1, poll, [] { return false; });
   server->Kill();
   EXPECT_TRUE(Until(5, poll, [&] { return !session.connected() && !cut.ok; }));
