@@ -43,19 +43,21 @@ class DepthSensor {
   cv::Mat Measure(const Hits& hits, const Matrix3& R_WI, const std::vector<double>& holes, Random& random);
 
  private:
-  void StructuredLight(const Hits& hits, const std::vector<double>& holes, Random& random);
-  void TimeOfFlight(const Hits& hits, const std::vector<double>& holes, Random& random);
+  void StructuredLight(const Hits& hits, const Matrix3& R_WI, const std::vector<double>& holes, Random& random);
+  void TimeOfFlight(const Hits& hits, const Matrix3& R_WI, const std::vector<double>& holes, Random& random);
+  void MarkEdges(const Hits& hits);
   void MarkShadows(const Hits& hits);
   cv::Mat Register() const;
 
   DepthSensorOptions options_;
   CameraModel colour_, infrared_;
-  Eigen::Matrix3f R_IW_ = Eigen::Matrix3f::Identity();
   NoiseTable table_;
   SmoothNoise coarse_, wobble_x_, wobble_y_, hole_field_;
-  std::vector<float> measured_;  // m, 0: none; infrared image
-  std::vector<uint8_t> shadow_;  // 1: not lit by the projector
-  std::vector<float> row_;       // disparity by projector column
+  std::vector<float> measured_;           // m, 0: none; infrared image
+  std::vector<uint8_t> shadow_;           // 1: not lit by the projector
+  std::vector<uint8_t> edge_;             // 1: beside a jump of depth
+  std::vector<float> nearest_of_column_;  // disparity by projector column
+  std::vector<float> rows_;               // of the noise fields
 };
 
 }  // namespace coach

@@ -1,6 +1,7 @@
 // Fast image noise: a table of normal numbers read from random places.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "tools/simulator/random.h"
@@ -31,13 +32,16 @@ class SmoothNoise {
     const size_t start = random.Bits();
     for (size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = table.At(start, i);
   }
-  /// Bilinear; scaled by 1.5 so that the average variance between the nodes is 1.
-  float At(int x, int y) const {
-    const int cx = x / cell_, cy = y / cell_;
-    const float fx = static_cast<float>(x - cx * cell_) / static_cast<float>(cell_);
-    const float fy = static_cast<float>(y - cy * cell_) / static_cast<float>(cell_);
-    const float* n = &nodes_[static_cast<size_t>(cy * nx_ + cx)];
-    return 1.5f * ((1 - fy) * ((1 - fx) * n[0] + fx * n[1]) + fy * ((1 - fx) * n[nx_] + fx * n[nx_ + 1]));
+  /// The values of row y, `width` of them. Bilinear; scaled by 1.5 so that the average variance between the nodes is 1.
+  void Row(int y, int width, float* out) const {
+    const float step = 1 / static_cast<float>(cell_);
+    const float fy = static_cast<float>(y % cell_) * step;
+    const float* n = &nodes_[static_cast<size_t>(y / cell_ * nx_)];
+    for (int x0 = 0; x0 < width; x0 += cell_, ++n) {
+      const float left = 1.5f * ((1 - fy) * n[0] + fy * n[nx_]), right = 1.5f * ((1 - fy) * n[1] + fy * n[nx_ + 1]);
+      const float slope = step * (right - left);
+      for (int x = x0; x < std::min(x0 + cell_, width); ++x) out[x] = left + static_cast<float>(x - x0) * slope;
+    }
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -11,13 +12,14 @@ namespace coach {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kLanes = 8;
-constexpr float kSurfaceOffset = 1e-4f;  // m: a shadow ray starts this far off the surface it leaves
+constexpr int kTile = 4, kLanes = kTile * kTile;  // px: rays go in square packets
+constexpr float kSurfaceOffset = 1e-4f;           // m: a shadow ray starts this far off the surface it leaves
 
 struct Body {
-  RTCGeometry geometry = nullptr;  // null for a fixture
-  Pose X_WB = Pose::Identity();
-  bool moves = false;  // its normals are in its own frame
+  RTCGeometry geometry = nullptr;
+  Eigen::Matrix3f R_WB = Eigen::Matrix3f::Identity();
+  bool moves = false;                    // its normals are in its own frame
+  std::vector<RoundSegment> segments{};  // of a limb
 };
 
 RTCIntersectContext Context(bool coherent) {
@@ -72,17 +74,27 @@ void Hits::Resize(int w, int h) {
 struct RayTracer::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  RTCScene fixtures = nullptr;  // one instance for all that never moves
-  unsigned fixtures_instance = RTC_INVALID_GEOMETRY_ID;
   std::vector<RTCScene> meshes;
   std::vector<Body> bodies;
-  std::vector<int> body_of_geometry, body_of_fixture;  // by Embree's ids
+  std::vector<int> body_of_geometry;  // by Embree's ids
 
   RTCGeometry NewMesh(const TriangleMesh& mesh, const Pose& X) const;
   int Add(const Body& body);
+  /// The unit normal (world) towards where the ray comes from. @param p where it hits. @param n Embree's, of any
+  /// length.
+  Eigen::Vector3f Normal(int body, unsigned primitive, const Eigen::Vector3f& p, Eigen::Vector3f n,
+                         const Eigen::Vector3f& direction) const {
+    const Body& b = bodies[static_cast<size_t>(body)];
+    if (!b.segments.empty()) {
+      n = LimbNormal(b.segments[primitive / kLimbTriangles], p);
+    } else {
+      if (b.moves) n = b.R_WB * n;
+      n.normalize();
+    }
+    return n.dot(direction) > 0 ? -n : n;
+  }
   int BodyOf(unsigned geometry, unsigned instance) const {
-    if (instance == RTC_INVALID_GEOMETRY_ID) return body_of_geometry[geometry];
-    return instance == fixtures_instance ? body_of_fixture[geometry] : body_of_geometry[instance];
+    return body_of_geometry[instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance];
   }
 };
 
@@ -121,8 +133,6 @@ RayTracer::RayTracer() : state_(std::make_unique<State>()) {
   state_->scene = rtcNewScene(state_->device);
   rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_DYNAMIC);
   rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_LOW);
-  state_->fixtures = rtcNewScene(state_->device);
-  rtcSetSceneBuildQuality(state_->fixtures, RTC_BUILD_QUALITY_HIGH);
 }
 
 RayTracer::~RayTracer() {
@@ -130,7 +140,6 @@ RayTracer::~RayTracer() {
     if (body.geometry) rtcReleaseGeometry(body.geometry);
   }
   rtcReleaseScene(state_->scene);
-  rtcReleaseScene(state_->fixtures);
   for (RTCScene mesh : state_->meshes) rtcReleaseScene(mesh);
   rtcReleaseDevice(state_->device);
 }
@@ -157,27 +166,21 @@ int RayTracer::AddBody(int mesh) {
 
 int RayTracer::AddLimb() {
   Body body;
-  body.geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  body.geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   const int index = state_->Add(body);
   SetSegments(index, {});
   return index;
 }
 
 int RayTracer::AddFixture(const TriangleMesh& mesh, const Pose& X_WB) {
-  RTCGeometry geometry = state_->NewMesh(mesh, X_WB);
-  const unsigned id = rtcAttachGeometry(state_->fixtures, geometry);
-  rtcReleaseGeometry(geometry);
-  const int index = state_->Add({});
-  state_->body_of_fixture.resize(id + 1, -1);
-  state_->body_of_fixture[id] = index;
-  return index;
+  return state_->Add({.geometry = state_->NewMesh(mesh, X_WB)});
 }
 
 int RayTracer::num_bodies() const { return static_cast<int>(state_->bodies.size()); }
 
 void RayTracer::SetPose(int body, const Pose& X_WB) {
   Body& b = state_->bodies.at(static_cast<size_t>(body));
-  b.X_WB = X_WB;
+  b.R_WB = X_WB.linear().cast<float>();
   float matrix[12];
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 3; ++row) matrix[3 * column + row] = static_cast<float>(X_WB(row, column));
@@ -187,67 +190,66 @@ void RayTracer::SetPose(int body, const Pose& X_WB) {
 }
 
 void RayTracer::SetSegments(int limb, const std::vector<RoundSegment>& segments) {
-  RTCGeometry geometry = state_->bodies.at(static_cast<size_t>(limb)).geometry;
-  // Embree wants at least one segment: a point far under the floor stands for none.
+  Body& body = state_->bodies.at(static_cast<size_t>(limb));
+  // Embree wants at least one triangle: a point far under the floor stands for none.
   static const std::vector<RoundSegment> kNone{{Vector3(0, 0, -50), Vector3(0, 0, -50.001), 1e-4, 1e-4}};
   const auto& list = segments.empty() ? kNone : segments;
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                                                               4 * sizeof(float), 2 * list.size()));
-  auto* indices = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), list.size()));
-  unsigned next = 0;
-  for (const RoundSegment& s : list) {
-    for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(s.a[i]);
-    *vertices++ = static_cast<float>(s.radius_a);
-    for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(s.b[i]);
-    *vertices++ = static_cast<float>(s.radius_b);
-    *indices++ = next;
-    next += 2;
+  const bool same_shape = body.segments.size() == list.size();
+  body.segments = list;
+  float* vertices = nullptr;
+  if (same_shape) {
+    vertices = static_cast<float*>(rtcGetGeometryBufferData(body.geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    rtcUpdateGeometryBuffer(body.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcSetGeometryBuildQuality(body.geometry, RTC_BUILD_QUALITY_REFIT);
+  } else {
+    rtcSetGeometryBuildQuality(body.geometry, RTC_BUILD_QUALITY_MEDIUM);
+    vertices = static_cast<float*>(rtcSetNewGeometryBuffer(body.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                           3 * sizeof(float), kLimbVertices * list.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        body.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), kLimbTriangles * list.size()));
+    for (unsigned s = 0; s < list.size(); ++s) {
+      for (const auto& t : LimbTriangles()) {
+        for (const unsigned i : t) *indices++ = s * kLimbVertices + i;
+      }
+    }
   }
-  rtcCommitGeometry(geometry);
+  for (size_t s = 0; s < list.size(); ++s) WriteLimbVertices(list[s], vertices + 3 * kLimbVertices * s);
+  rtcCommitGeometry(body.geometry);
 }
 
-void RayTracer::Commit() {
-  if (state_->fixtures_instance == RTC_INVALID_GEOMETRY_ID && !state_->body_of_fixture.empty()) {
-    rtcCommitScene(state_->fixtures);
-    RTCGeometry instance = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, state_->fixtures);
-    rtcCommitGeometry(instance);
-    state_->fixtures_instance = rtcAttachGeometry(state_->scene, instance);
-    rtcReleaseGeometry(instance);
-  }
-  rtcCommitScene(state_->scene);
-}
+void RayTracer::Commit() { rtcCommitScene(state_->scene); }
 
 void RayTracer::Trace(const CameraModel& camera, const Pose& X_WC, Hits* hits) const {
   hits->Resize(camera.width, camera.height);
   const PixelRays rays(camera, X_WC);
   RTCIntersectContext context = Context(true);
-  alignas(32) int valid[kLanes];
-  for (int y = 0; y < camera.height; ++y) {
-    for (int x0 = 0; x0 < camera.width; x0 += kLanes) {
-      alignas(64) RTCRayHit8 packet;
+  alignas(64) int valid[kLanes];
+  alignas(64) RTCRayHit16 packet;
+  for (int i = 0; i < kLanes; ++i) {
+    packet.ray.org_x[i] = rays.origin.x();
+    packet.ray.org_y[i] = rays.origin.y();
+    packet.ray.org_z[i] = rays.origin.z();
+    packet.ray.tnear[i] = packet.ray.time[i] = 0;
+    packet.ray.mask[i] = 0xFFFFFFFFu;
+    packet.ray.id[i] = packet.ray.flags[i] = 0;
+  }
+  for (int y0 = 0; y0 < camera.height; y0 += kTile) {
+    for (int x0 = 0; x0 < camera.width; x0 += kTile) {
       for (int i = 0; i < kLanes; ++i) {
-        const Eigen::Vector3f d = rays.Direction(x0 + i, y);
-        valid[i] = x0 + i < camera.width ? -1 : 0;
-        packet.ray.org_x[i] = rays.origin.x();
-        packet.ray.org_y[i] = rays.origin.y();
-        packet.ray.org_z[i] = rays.origin.z();
+        const int x = x0 + i % kTile, y = y0 + i / kTile;
+        const Eigen::Vector3f d = rays.Direction(x, y);
+        valid[i] = x < camera.width && y < camera.height ? -1 : 0;
         packet.ray.dir_x[i] = d.x();
         packet.ray.dir_y[i] = d.y();
         packet.ray.dir_z[i] = d.z();
-        packet.ray.tnear[i] = 0;
         packet.ray.tfar[i] = kInfinity;
-        packet.ray.time[i] = 0;
-        packet.ray.mask[i] = 0xFFFFFFFFu;
-        packet.ray.id[i] = 0;
-        packet.ray.flags[i] = 0;
         packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       }
-      rtcIntersect8(valid, state_->scene, &context, &packet);
-      for (int i = 0; i < kLanes && x0 + i < camera.width; ++i) {
-        const size_t k = static_cast<size_t>(y * camera.width + x0 + i);
+      rtcIntersect16(valid, state_->scene, &context, &packet);
+      for (int i = 0; i < kLanes; ++i) {
+        if (!valid[i]) continue;
+        const size_t k = static_cast<size_t>((y0 + i / kTile) * camera.width + x0 + i % kTile);
         const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
         if (geometry == RTC_INVALID_GEOMETRY_ID) {
           hits->body[k] = -1;
@@ -255,11 +257,10 @@ void RayTracer::Trace(const CameraModel& camera, const Pose& X_WC, Hits* hits) c
           continue;
         }
         const int index = state_->BodyOf(geometry, instance);
-        Eigen::Vector3f n(packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]);
-        const Body& body = state_->bodies[static_cast<size_t>(index)];
-        if (body.moves) n = body.X_WB.linear().cast<float>() * n;
-        n.normalize();
-        if (n.dot(Eigen::Vector3f(packet.ray.dir_x[i], packet.ray.dir_y[i], packet.ray.dir_z[i])) > 0) n = -n;
+        const Eigen::Vector3f d(packet.ray.dir_x[i], packet.ray.dir_y[i], packet.ray.dir_z[i]);
+        const Eigen::Vector3f n =
+            state_->Normal(index, packet.hit.primID[i], rays.origin + packet.ray.tfar[i] * d,
+                           Eigen::Vector3f(packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]), d);
         hits->body[k] = index;
         hits->z[k] = packet.ray.tfar[i];
         hits->normal_x[k] = n.x();
@@ -278,10 +279,10 @@ RayTracer::RayHit RayTracer::Cast(const Vector3& origin, const Vector3& directio
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
   hit.body = state_->BodyOf(ray.hit.geomID, ray.hit.instID[0]);
   hit.distance = ray.ray.tfar;
-  hit.normal = Vector3(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z).normalized();
-  const Body& body = state_->bodies[static_cast<size_t>(hit.body)];
-  if (body.moves) hit.normal = body.X_WB.linear() * hit.normal;
-  if (hit.normal.dot(direction) > 0) hit.normal = -hit.normal;
+  hit.normal = state_
+                   ->Normal(hit.body, ray.hit.primID, (origin + hit.distance * direction).cast<float>(),
+                            Eigen::Vector3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z), direction.cast<float>())
+                   .cast<double>();
   return hit;
 }
 
@@ -289,26 +290,31 @@ void RayTracer::Light(const CameraModel& camera, const Pose& X_WC, const Hits& h
                       double softness, std::vector<float>* free) const {
   free->assign(hits.size(), 0.0f);
   const PixelRays rays(camera, X_WC);
-  const Eigen::Vector3f centre = light.cast<float>();
   RTCIntersectContext context = Context(true);
-  alignas(32) int valid[kLanes];
-  // 4 x 4 points of the light, ordered so that neighbours look at far ones.
-  static constexpr int kOrder[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-  for (int y = 0; y < hits.height; ++y) {
-    for (int x0 = 0; x0 < hits.width; x0 += kLanes) {
-      alignas(64) RTCRay8 packet;
+  alignas(64) int valid[kLanes];
+  alignas(64) RTCRay16 packet;
+  // The points of the light that a tile's pixels look at, ordered so that neighbours look at far ones.
+  static constexpr int kOrder[kLanes] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+  std::array<Eigen::Vector3f, kLanes> targets;
+  for (size_t i = 0; i < kLanes; ++i) {
+    const auto side = [&](int c) { return softness * (c - 1.5) / 1.5; };
+    targets[i] = (light + Vector3(side(kOrder[i] & 3), side(kOrder[i] >> 2), 0)).cast<float>();
+  }
+  for (int y0 = 0; y0 < hits.height; y0 += kTile) {
+    for (int x0 = 0; x0 < hits.width; x0 += kTile) {
       bool any = false;
       for (int i = 0; i < kLanes; ++i) {
-        const int x = x0 + i;
-        const size_t k = static_cast<size_t>(y * hits.width + std::min(x, hits.width - 1));
+        const int x = x0 + i % kTile, y = y0 + i / kTile;
+        valid[i] = 0;
+        if (x >= hits.width || y >= hits.height) continue;
+        const size_t k = static_cast<size_t>(y * hits.width + x);
+        if (hits.body[k] < 0) continue;
         const Eigen::Vector3f n(hits.normal_x[k], hits.normal_y[k], hits.normal_z[k]);
-        const int cell = kOrder[(y & 3) * 4 + (x & 3)];
-        const auto side = [&](int c) { return static_cast<float>(softness) * (static_cast<float>(c) - 1.5f) / 1.5f; };
-        const Eigen::Vector3f target = centre + Eigen::Vector3f(side(cell & 3), side(cell >> 2), 0);
         const Eigen::Vector3f p = rays.origin + hits.z[k] * rays.Direction(x, y) + kSurfaceOffset * n;
-        const Eigen::Vector3f way = target - p;
-        valid[i] = x < hits.width && hits.body[k] >= 0 && way.dot(n) > 0 ? -1 : 0;
-        any = any || valid[i];
+        const Eigen::Vector3f way = targets[static_cast<size_t>(i)] - p;
+        if (way.dot(n) <= 0) continue;
+        valid[i] = -1;
+        any = true;
         packet.org_x[i] = p.x();
         packet.org_y[i] = p.y();
         packet.org_z[i] = p.z();
@@ -323,9 +329,10 @@ void RayTracer::Light(const CameraModel& camera, const Pose& X_WC, const Hits& h
         packet.flags[i] = 0;
       }
       if (!any) continue;
-      rtcOccluded8(valid, state_->scene, &context, &packet);
-      for (int i = 0; i < kLanes && x0 + i < hits.width; ++i) {
-        if (valid[i] && packet.tfar[i] >= 0) (*free)[static_cast<size_t>(y * hits.width + x0 + i)] = 1;
+      rtcOccluded16(valid, state_->scene, &context, &packet);
+      for (int i = 0; i < kLanes; ++i) {
+        if (valid[i] && packet.tfar[i] >= 0)
+          (*free)[static_cast<size_t>((y0 + i / kTile) * hits.width + x0 + i % kTile)] = 1;
       }
     }
   }

@@ -6,14 +6,9 @@
 
 #include "common/geometry/camera.h"
 #include "common/geometry/mesh.h"
+#include "tools/simulator/limb_mesh.h"
 
 namespace coach {
-
-/// A cone with rounded ends: what arms and fingers are made of. World frame, m.
-struct RoundSegment {
-  Vector3 a = Vector3::Zero(), b = Vector3::Zero();
-  double radius_a = 0.01, radius_b = 0.01;
-};
 
 /// What each pixel of a camera sees, row by row. body -1: nothing.
 struct Hits {

@@ -47,6 +47,15 @@ Vector3f Albedo(const Paint& paint, const std::vector<Pattern>& patterns, const 
   return paint.first + t * (paint.second - paint.first);
 }
 
+/// A highlight's strength: the 24th power of the cosine between the normal and the middle of both directions (Blinn).
+float Highlight(const Vector3f& n, const Vector3f& to_lamp, const Vector3f& ray) {
+  const Vector3f half = to_lamp - ray / ray.norm();
+  const float cosine = n.dot(half), square = cosine * cosine, length = half.squaredNorm();
+  if (cosine <= 0 || square < 0.6f * length) return 0;  // under 0.2 %
+  const float s2 = square / length, s4 = s2 * s2, s8 = s4 * s4;
+  return s8 * s8 * s8;
+}
+
 /// Soft shadows: the 4 x 4 pattern of light samples averaged over its own size.
 void Soften(int width, int height, const std::vector<float>& lit, std::vector<float>* soft) {
   std::vector<float> rows(lit.size());
@@ -82,35 +91,31 @@ void Shade(const CameraModel& camera, const Pose& X_WC, const Hits& hits, const 
   const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
   const Vector3f origin = X_WC.translation().cast<float>();
   const float ifx = static_cast<float>(1 / camera.fx), ify = static_cast<float>(1 / camera.fy);
+  const Vector3f dx = R_WC.col(0) * ifx;
   for (int y = 0; y < hits.height; ++y) {
     float* out = linear->ptr<float>(y);
+    const Vector3f row = R_WC * Vector3f(-static_cast<float>(camera.cx) * ifx,
+                                         (static_cast<float>(y) - static_cast<float>(camera.cy)) * ify, 1);
     for (int x = 0; x < hits.width; ++x, out += 3) {
       const size_t k = static_cast<size_t>(y * hits.width + x);
       if (hits.body[k] < 0) {
         out[0] = out[1] = out[2] = 0.5f;
         continue;
       }
-      const Vector3f ray = R_WC * Vector3f((static_cast<float>(x) - static_cast<float>(camera.cx)) * ifx,
-                                           (static_cast<float>(y) - static_cast<float>(camera.cy)) * ify, 1);
+      const Vector3f ray = row + static_cast<float>(x) * dx;
       const Vector3f p = origin + hits.z[k] * ray;
       const Vector3f n(hits.normal_x[k], hits.normal_y[k], hits.normal_z[k]);
       const Paint& paint = paints[static_cast<size_t>(hits.body[k])];
-      const Vector3f albedo = Albedo(paint, patterns, p, n);
       const Vector3f to_lamp = lights.lamp - p;
-      const float distance2 = to_lamp.squaredNorm();
-      const Vector3f l = to_lamp / std::sqrt(distance2);
-      const float shadow = soft[k] * 4 / distance2;
+      const float near = 1 / to_lamp.squaredNorm();
+      const Vector3f l = to_lamp * std::sqrt(near);
+      const float shadow = soft[k] * 4 * near;
       const float up = 0.5f + 0.5f * n.z();
-      Vector3f light = lights.ground + up * (lights.ambient - lights.ground);
-      light += std::max(0.0f, n.dot(l)) * shadow * lights.lamp_colour;
-      light += std::max(0.0f, n.dot(lights.window)) * lights.window_colour;
-      Vector3f colour = albedo.cwiseProduct(light);
-      if (paint.gloss > 0) {
-        const Vector3f half = (l - ray.normalized()).normalized();
-        const float s = std::max(0.0f, n.dot(half));
-        const float s2 = s * s, s4 = s2 * s2, s8 = s4 * s4;
-        colour += paint.gloss * s8 * s8 * s8 * shadow * lights.lamp_colour;
-      }
+      const Vector3f light = lights.ground + up * (lights.ambient - lights.ground) +
+                             std::max(0.0f, n.dot(l)) * shadow * lights.lamp_colour +
+                             std::max(0.0f, n.dot(lights.window)) * lights.window_colour;
+      const Vector3f colour = Albedo(paint, patterns, p, n).cwiseProduct(light) +
+                              paint.gloss * shadow * Highlight(n, l, ray) * lights.lamp_colour;
       out[0] = colour.z();
       out[1] = colour.y();
       out[2] = colour.x();

@@ -17,10 +17,12 @@ class Pattern {
 
   Pattern(Kind kind, Random& random);
 
-  /// Value at (u, v) in tiles; wraps.
-  float At(double u, double v) const {
-    const int x = static_cast<int>(std::floor(u * kSize)) & (kSize - 1);
-    const int y = static_cast<int>(std::floor(v * kSize)) & (kSize - 1);
+  /// Value at (u, v) in tiles, each within +-250; wraps.
+  float At(float u, float v) const {
+    // Truncation is the floor of a number that was made positive by whole tiles.
+    constexpr float kWhole = 256 * kSize;
+    const int x = static_cast<int>(u * kSize + kWhole) & (kSize - 1);
+    const int y = static_cast<int>(v * kSize + kWhole) & (kSize - 1);
     return values_[static_cast<size_t>(y * kSize + x)];
   }
 
