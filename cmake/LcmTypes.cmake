@@ -7,8 +7,11 @@ function(coach_add_lcm_types target)
   file(GLOB inputs CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.lcm)
   foreach(in IN LISTS inputs)
     get_filename_component(type ${in} NAME_WE)
+    # lcm-gen 1.3.1 bounds the length of a string from above only: one of -2^31 would be read as 2^31 bytes.
     add_custom_command(OUTPUT ${cpp_dir}/${ARG_PACKAGE}/${type}.hpp
-      COMMAND ${LCM_GEN} --cpp --cpp-std c++11 --cpp-hpath ${cpp_dir} ${in} DEPENDS ${in} VERBATIM)
+      COMMAND ${LCM_GEN} --cpp --cpp-std c++11 --cpp-hpath ${cpp_dir} ${in}
+      COMMAND sed -i -E "s/if\\((__[a-z0-9_]+) > maxlen - pos\\)/if(\\1 < 1 || \\1 > maxlen - pos)/" ${cpp_dir}/${ARG_PACKAGE}/${type}.hpp
+      DEPENDS ${in} VERBATIM)
     add_custom_command(OUTPUT ${java_dir}/src/${ARG_PACKAGE}/${type}.java
       COMMAND ${LCM_GEN} --java --jpath ${java_dir}/src ${in} DEPENDS ${in} VERBATIM)
     list(APPEND headers ${cpp_dir}/${ARG_PACKAGE}/${type}.hpp)

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/geometry/ply_file.h"
+
 namespace coach {
 
 Vector3 TriangleMesh::Normal(size_t triangle) const {
@@ -78,27 +80,41 @@ double SignedVolume(const TriangleMesh& mesh) {
   return v;
 }
 
+/// Open3D's own PLY reader trusts what the file says of itself, so that a damaged one can end the process.
+static open3d::geometry::TriangleMesh ReadFile(const std::filesystem::path& file) {
+  open3d::geometry::TriangleMesh read;
+  if (file.extension() != ".ply" && file.extension() != ".PLY") {
+    open3d::utility::SetVerbosityLevel(open3d::utility::VerbosityLevel::Error);
+    if (!open3d::io::ReadTriangleMesh(file.string(), read)) read.Clear();
+    return read;
+  }
+  const TriangleMesh mesh = ReadPly(file);
+  read.vertices_ = mesh.vertices;
+  for (const auto& t : mesh.triangles) read.triangles_.emplace_back(t[0], t[1], t[2]);
+  return read;
+}
+
 TriangleMesh ReadMesh(const std::filesystem::path& file, double metres_per_unit) {
   const auto fail = [&](const std::string& what) { throw std::runtime_error("mesh " + file.string() + ": " + what); };
   if (!std::filesystem::exists(file)) fail("no such file");
-  open3d::utility::SetVerbosityLevel(open3d::utility::VerbosityLevel::Error);
   open3d::geometry::TriangleMesh read;
-  bool ok = false;
   try {
-    ok = open3d::io::ReadTriangleMesh(file.string(), read);
+    read = ReadFile(file);
   } catch (const std::exception& e) {
     fail(e.what());
   }
-  if (!ok || read.vertices_.empty()) fail("can't be read as PLY, OBJ or STL");
+  if (read.vertices_.empty()) fail("can't be read as PLY, OBJ or STL");
+  const int named = static_cast<int>(read.vertices_.size());
+  for (const Eigen::Vector3i& t : read.triangles_) {
+    if (t.minCoeff() < 0 || t.maxCoeff() >= named) fail("a triangle names a vertex that does not exist");
+  }
   read.RemoveDuplicatedVertices();
   TriangleMesh mesh;
   for (const Eigen::Vector3d& v : read.vertices_) {
     if (!v.allFinite()) fail("a vertex is not finite");
     mesh.vertices.push_back(v * metres_per_unit);
   }
-  const int n = static_cast<int>(mesh.vertices.size());
   for (const Eigen::Vector3i& t : read.triangles_) {
-    if (t.minCoeff() < 0 || t.maxCoeff() >= n) fail("a triangle names a vertex that does not exist");
     mesh.triangles.push_back({t[0], t[1], t[2]});
     if (!(mesh.Area(mesh.triangles.size() - 1) > 1e-14)) mesh.triangles.pop_back();
   }

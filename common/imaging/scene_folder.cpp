@@ -43,16 +43,23 @@ json ReadJson(const fs::path& file) {
   }
 }
 
+/// A value as a message shows it. What is nested is named only: writing it out takes stack for every level.
+std::string Shown(const json& value) {
+  const bool nested =
+      value.is_structured() && std::any_of(value.begin(), value.end(), [](const json& v) { return v.is_structured(); });
+  return nested ? std::string("a nested ") + value.type_name() : value.dump();
+}
+
 double Number(const fs::path& file, const std::string& place, const json& value) {
   if (!value.is_number() || !std::isfinite(value.get<double>()))
-    Fail(file, place + ": a number expected, found " + value.dump());
+    Fail(file, place + ": a number expected, found " + Shown(value));
   return value.get<double>();
 }
 
 CameraModel ParseCamera(const fs::path& file, const std::string& place, const json& entry) {
   if (!entry.is_object() || !entry.contains("cam_K")) Fail(file, place + ": an object with cam_K expected");
   const json& K = entry["cam_K"];
-  if (!K.is_array() || K.size() != 9) Fail(file, place + ".cam_K: 9 numbers expected, found " + K.dump());
+  if (!K.is_array() || K.size() != 9) Fail(file, place + ".cam_K: 9 numbers expected, found " + Shown(K));
   const auto at = [&](size_t i) { return Number(file, place + ".cam_K[" + std::to_string(i) + "]", K[i]); };
   CameraModel camera;
   camera.fx = at(0);
@@ -60,15 +67,15 @@ CameraModel ParseCamera(const fs::path& file, const std::string& place, const js
   camera.fy = at(4);
   camera.cy = at(5);
   if (at(1) != 0 || at(3) != 0 || at(6) != 0 || at(7) != 0 || at(8) != 1)
-    Fail(file, place + ".cam_K: a camera matrix [fx 0 cx, 0 fy cy, 0 0 1] expected, found " + K.dump());
-  if (camera.fx <= 0 || camera.fy <= 0) Fail(file, place + ".cam_K: focal lengths must be positive, found " + K.dump());
+    Fail(file, place + ".cam_K: a camera matrix [fx 0 cx, 0 fy cy, 0 0 1] expected, found " + Shown(K));
+  if (camera.fx <= 0 || camera.fy <= 0) Fail(file, place + ".cam_K: focal lengths must be positive, found " + Shown(K));
   return camera;
 }
 
 double ParseDepthScale(const fs::path& file, const std::string& place, const json& entry) {
   if (!entry.contains("depth_scale")) return 0.001;
   const double scale = Number(file, place + ".depth_scale", entry["depth_scale"]);
-  if (scale <= 0) Fail(file, place + ".depth_scale: mm per unit expected, found " + entry["depth_scale"].dump());
+  if (scale <= 0) Fail(file, place + ".depth_scale: mm per unit expected, found " + Shown(entry["depth_scale"]));
   return scale / 1000;
 }
 

@@ -15,6 +15,7 @@ def page(program, help_text):
     name = pathlib.Path(program).name
     head, _, options = help_text.partition("\nOptions:\n")
     description, _, usage = head.partition("\nUsage:")
+    usage = re.sub(r"\S*/" + re.escape(name), name, usage)
     lines = [f".TH {name.upper()} 1 \"\" Coach \"User commands\"", ".SH NAME",
              f"{escaped(name)} \\- {escaped(description.strip().splitlines()[0].rstrip('.'))}", ".SH SYNOPSIS",
              f".B {escaped(usage.strip().splitlines()[0] if usage.strip() else name)}", ".SH DESCRIPTION",

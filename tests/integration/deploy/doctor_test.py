@@ -1,7 +1,10 @@
 """coach-doctor finds each trouble and names a command that mends it."""
+import hashlib
 import importlib.machinery
 import importlib.util
 import pathlib
+import socket
+import struct
 import sys
 import tempfile
 import unittest
@@ -33,7 +36,7 @@ class DoctorTest(unittest.TestCase):
         file.write_text(text)
 
     def findings(self, tables=("T1",)):
-        found = list(doctor.examine(self.root, list(tables), ""))
+        found = list(doctor.examine(self.root, list(tables), None))
         for what, mend in found:
             self.assertTrue(what and mend)
         return [what for what, _ in found]
@@ -74,13 +77,40 @@ class DoctorTest(unittest.TestCase):
         self.assertIsNone(doctor.clock_problem("NTPSynchronized=yes"))
         self.assertIsNotNone(doctor.clock_problem("Timezone=UTC\nNTPSynchronized=no\n"))
 
+    def test_two_tables_in_each_others_way(self):
+        self.write("etc/coach/T2/station.yaml", STATION)
+        self.assertEqual(self.findings(["T1", "T2"]), ["T1 and T2 have the same station: T1", "T1 and T2 have the same port: 8080"])
+        self.write("etc/coach/T2/station.yaml", STATION.replace("T1", "T2") + "  port: 8081\n")
+        self.assertEqual(self.findings(["T1", "T2"]), [])
+
     def test_health_of_the_services(self):
-        lines = [f'coach_up{{station="T1",service="{name}"}} 1\ncoach_state{{station="T1",service="{name}"}} 1' for name in doctor.SERVICES]
-        self.assertEqual(list(doctor.health_problems("\n".join(lines), "T1")), [])
-        lines[0] = lines[0].replace("} 1", "} 0")
-        lines[1] = lines[1][:-1] + "2"
-        found = [what for what, _ in doctor.health_problems("\n".join(lines), "T1")]
-        self.assertEqual(found, ["capture does not answer", "detector is in trouble"])
+        sha = hashlib.sha256(STATION.encode()).hexdigest()
+        sound = {name: {"host": "elsewhere", "pid": 1, "state": 1, "message": "", "version": "1.0", "sha256": sha} for name in doctor.SERVICES}
+        self.assertEqual(list(doctor.health_problems(sound, "T1", STATION)), [])
+        for change, words in (({"state": 2, "message": "no input"}, "is in trouble: no input"),
+                              ({"version": "0.9"}, "is version 0.9, others are 1.0"),
+                              ({"sha256": "0", "host": socket.gethostname()}, "was started with another station file")):
+            found = list(doctor.health_problems({**sound, "detector": {**sound["detector"], **change}}, "T1", STATION))
+            self.assertEqual(len(found), 1, found)
+            self.assertIn("detector " + words, found[0][0])
+            self.assertIn("coach-detector@T1", found[0][1])
+        del sound["capture"]
+        self.assertEqual([what for what, _ in doctor.health_problems(sound, "T1", STATION)], ["capture does not answer"])
+
+    def test_packets_of_the_bus(self):
+        def text(value):
+            return struct.pack(">i", len(value) + 1) + value.encode() + b"\0"
+
+        head = b"LC02" + bytes(4)
+        config = head + b"T1/CONFIG\0" + bytes(8) + text("detector") + text("1.0") + text("ab")
+        self.assertEqual(doctor.heard(config), ("T1", "detector", {"version": "1.0", "sha256": "ab"}))
+        health = (head + b"T1/SERVICE_HEALTH\0" + bytes(8) + bytes(8) + text("T1") + text("capture") + text("pc") + struct.pack(">i", 7) + b"\2" +
+                  text("no camera") + bytes(76))
+        self.assertEqual(doctor.heard(health), ("T1", "capture", {"host": "pc", "pid": 7, "state": 2, "message": "no camera"}))
+        for packet in (b"", b"LC03" + config[4:], head + b"T1/COLOR_IMAGE\0" + bytes(90), head + b"T1/CONFIG\0" + bytes(8) + b"\x80\0\0\0"):
+            self.assertIsNone(doctor.heard(packet))
+        for size in range(len(config)):
+            self.assertIsNone(doctor.heard(config[:size]))
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ SYSTEM = pathlib.Path("/lib/systemd/system")
 
 def instances():
     """Every service and target, templates as those of the table T1."""
-    return sorted(file.name.replace("@.", "@T1.") for file in UNITS.iterdir() if file.suffix in (".service", ".target"))
+    return sorted(file.name.replace("@.", "@T1.") for file in UNITS.iterdir() if file.suffix in (".service", ".target", ".timer"))
 
 
 def programs():
@@ -37,7 +37,7 @@ class UnitsTest(unittest.TestCase):
         shutil.copytree(UNITS, units)
         for target in SYSTEM.glob("*.target"):
             shutil.copy(target, units)
-        for program in [*(cls.root / "usr/bin" / name for name in programs().values()), cls.root / "usr/sbin/ip"]:
+        for program in [*(cls.root / "usr/bin" / name for name in programs().values()), cls.root / "usr/sbin/ip", cls.root / "usr/bin/find"]:
             program.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy("/usr/bin/true", program)
 
