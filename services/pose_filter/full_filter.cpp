@@ -85,6 +85,7 @@ PartPoses FullFilter::Step(const FilterInput& input) {
     return tracks_[a].visible_fraction * tracks_[a].confidence > tracks_[b].visible_fraction * tracks_[b].confidence;
   });
   UpdateLinks(input);
+  FollowBodies(order, observation, dt);
   updated_.assign(tracks_.size(), false);
   std::vector<Pose>& before = poses_before_;
   before.clear();
@@ -112,6 +113,59 @@ PartPoses FullFilter::Step(const FilterInput& input) {
   foreign_.Find(observation, owners_, camera_.X_TC(), area_, dt);
   ++steps_;
   return Output(input);
+}
+
+std::vector<RigidBody> FullFilter::Bodies(const std::vector<int>& best_seen_first, std::vector<Pose>& X_TG) const {
+  std::vector<RigidBody> bodies;
+  std::vector<bool> taken(tracks_.size(), false);
+  const auto add = [&](RigidBody& body, int part, const Pose& X_GP) {
+    taken[part] = true;
+    body.push_back({&ShapeOf(part).model, &ShapeOf(part).search_points, part, bit_of_part_[part], X_GP});
+  };
+  for (const int root : best_seen_first) {
+    if (taken[root] || tracks_[root].missing()) continue;
+    RigidBody body;
+    add(body, root, Pose::Identity());
+    for (size_t i = 0; i < body.size(); ++i) {
+      const int at = body[i].part;
+      for (const Link& link : links_) {
+        if (!link.known || (link.part_a != at && link.part_b != at)) continue;
+        const int other = link.part_a == at ? link.part_b : link.part_a;
+        if (taken[other] || !tracks_[other].alive()) continue;
+        add(body, other, body[i].X_GP * (link.part_a == at ? link.X_AB : link.X_AB.inverse()));
+      }
+    }
+    bodies.push_back(std::move(body));
+    X_TG.push_back(tracks_[root].X_TP);
+  }
+  return bodies;
+}
+
+void FullFilter::FollowBodies(const std::vector<int>& best_seen_first, const Observation& observation, double dt) {
+  followed_.assign(tracks_.size(), std::nullopt);
+  std::vector<Pose> X_TG;
+  const std::vector<RigidBody> bodies = Bodies(best_seen_first, X_TG);
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    const RigidBody& body = bodies[b];
+    Score score;
+    for (const RigidMember& m : body) {
+      const Score s = ScoreTile(tiles_[m.part], observation, owners_, m.part, m.class_bit);
+      score.covered += s.covered;
+      score.hidden += s.hidden;
+      score.inlier += s.inlier;
+      score.no_reading += s.no_reading;
+    }
+    if (score.open() < 20 || score.agreement() > options_.follow_agreement) continue;
+    for (const RigidMember& m : body) owners_.Remove(m.part, tiles_[m.part]);
+    const Pose predicted = PredictPose(tracks_[body.front().part], dt);
+    const Pose X_CG = SearchBody(body, observation, owners_, camera_.X_TC().inverse() * predicted,
+                                 camera_.X_TC().linear().transpose().col(2), dt, options_.body, scratch_);
+    for (const RigidMember& m : body) {
+      followed_[m.part] = camera_.X_TC() * X_CG * m.X_GP;
+      RenderTile(*m.model, observation.camera, X_CG * m.X_GP, OwnerMap::kStep, 0, tiles_[m.part]);
+      if (!tracks_[m.part].missing()) owners_.Add(m.part, tiles_[m.part]);
+    }
+  }
 }
 
 void FullFilter::TrySuggestions(const Observation& observation) {
@@ -189,7 +243,8 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   Track& track = tracks_[part];
   const Shape& shape = ShapeOf(part);
   const Pose X_CT = camera_.X_TC().inverse();
-  const Pose predicted = PredictPose(track, dt);
+  const Pose coasted = PredictPose(track, dt);
+  const Pose predicted = followed_[part].value_or(coasted);
   const uint8_t bit = bit_of_part_[part];
   Matrix6 carried_covariance;
   const std::optional<Pose> carried = CarriedBy(part, carried_covariance);
@@ -214,6 +269,7 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   const Vector3 first = best.X_CP.translation();
   if (const auto particle = BestParticle(part, observation, predicted, track.X_TP, best.X_CP, dt)) consider(*particle);
   const Pose rest = X_CT * track.X_TP;
+  if (followed_[part]) consider(X_CT * coasted);
   if (track.moving && (rest.translation() - first).norm() > 0.004) consider(rest);
   if (carried) {
     const Vector6 away = Difference(best.X_CP, expected);

@@ -12,6 +12,7 @@
 #include "services/pose_filter/pair_evidence.h"
 #include "services/pose_filter/part_track.h"
 #include "services/pose_filter/pose_filter.h"
+#include "services/pose_filter/rigid_body.h"
 
 namespace coach {
 
@@ -31,12 +32,14 @@ struct FullFilterOptions {
   double collision_cost = 0.2;     ///< of the likelihood, for a pose that lies in another part
   double allowed_overlap = 0.004;  ///< m, measured poses of touching parts overlap
   double full_overlap = 0.05;      ///< share of the surface inside the other part that costs all of it
+  double follow_agreement = 0.75;  ///< of a prediction, below which the body is looked for around it
   double least_jump_cost = 150;    ///< nats
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
   TrackOptions track;
   PoseSearchOptions search;
   RefinementOptions refinement;
+  BodySearchOptions body;
   CameraMotionOptions camera;
   TableOptions table;
   ForeignOptions foreign;
@@ -78,6 +81,10 @@ class FullFilter final : public PoseFilter {
   double CollisionCost(int part, const PoseCandidate& candidate) const;
   void UpdateLinks(const FilterInput& input);
   std::optional<Pose> CarriedBy(int part, Matrix6& covariance) const;
+  /// The bodies that the links make of the parts seen last, parts without links included.
+  std::vector<RigidBody> Bodies(const std::vector<int>& best_seen_first, std::vector<Pose>& X_TG) const;
+  /// Looks for the bodies that are not where they were predicted and notes where their parts are now.
+  void FollowBodies(const std::vector<int>& best_seen_first, const Observation& observation, double dt);
   void UpdateTrack(int part, const Observation& observation, double dt);
   std::optional<Pose> BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest,
                                    const Pose& refined, double dt);
@@ -108,6 +115,7 @@ class FullFilter final : public PoseFilter {
   std::vector<DepthTile> tiles_;  // of each part, as added to owners_
   std::vector<Pose> suggested_;
   std::vector<Link> links_;
+  std::vector<std::optional<Pose>> followed_;  // X_TP of parts that moved farther than predicted
   std::vector<Pose> poses_before_;
   std::vector<bool> updated_;  // parts whose pose is that of this frame
   BlobFinder blob_finder_;

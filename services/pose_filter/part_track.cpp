@@ -40,7 +40,7 @@ Pose PredictPose(const Track& track, double dt) {
 
 void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const TrackOptions& options, Track& track) {
   const Pose measured = X_TC * candidate.X_CP;
-  const Matrix6 information = RotateCovariance(X_TC.linear(), candidate.refinement.information);
+  const Matrix6 information = RotateCovariance(X_TC.linear(), candidate.evidence.information);
   const Matrix6 noise = (information + Matrix6::Identity() * 1e-3).inverse();
   const Pose before = track.X_TP;
   // Does the pose say that the part moves? Judged against a part at rest.
@@ -89,7 +89,7 @@ void Restart(const PoseCandidate& candidate, const Pose& X_TC, Track& track) {
   track.status = PartStatus::kTracked;
   track.X_TP = track.X_TP_free = X_TC * candidate.X_CP;
   track.covariance =
-      (RotateCovariance(X_TC.linear(), candidate.refinement.information) + Matrix6::Identity() * 1e-3).inverse();
+      (RotateCovariance(X_TC.linear(), candidate.evidence.information) + Matrix6::Identity() * 1e-3).inverse();
   track.covariance_free = track.covariance;
   track.moving = true;
   Describe(candidate, track);

@@ -53,15 +53,16 @@ std::vector<Vector3> Anchors(const Blob& blob, const Observation& o, double expe
 bool Acceptable(const PoseCandidate& c, const PoseSearchOptions& options) {
   return c.score.agreement() >= options.least_agreement && c.score.open() >= options.least_visible * c.full_samples &&
          c.score.open() >= 12 && c.outline_support() >= options.least_outline &&
-         c.refinement.depth_chi2 <= options.largest_chi2;
+         c.evidence.depth_chi2 <= options.largest_chi2;
 }
 
 PoseCandidate Polish(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
                      uint8_t class_bit, const Pose& X_CP, const RefinementOptions& options,
                      RefinementScratch& scratch) {
   PoseCandidate c;
-  c.refinement = Refine(model, observation, owners, part, class_bit, X_CP, options, scratch);
-  c.X_CP = c.refinement.X_CP;
+  const RefinementResult refined = Refine(model, observation, owners, part, class_bit, X_CP, options, scratch);
+  c.X_CP = refined.X_CP;
+  c.evidence = refined.last;
   RenderTile(model, observation.camera, c.X_CP, OwnerMap::kStep, 0, scratch.tile);
   c.score = ScoreTile(scratch.tile, observation, owners, part, class_bit);
   const double in_image = InImageFraction(model, observation.camera, c.X_CP);

@@ -18,20 +18,20 @@ struct PoseSearchOptions {
   double least_agreement = 0.6;    ///< Score::agreement of an accepted pose
   double almost_as_likely = 0.92;  ///< of the best log-likelihood: such poses are told apart by what was known before
   double least_outline = 0.72;     ///< PoseCandidate::outline_support of an accepted pose
-  double largest_chi2 = 3.0;       ///< RefinementResult::depth_chi2 of an accepted pose
+  double largest_chi2 = 3.0;       ///< PoseEquations::depth_chi2 of an accepted pose
   double least_visible = 0.2;      ///< share of the silhouette that must be open
 };
 
 struct PoseCandidate {
   Pose X_CP = Pose::Identity();
   Score score;
-  RefinementResult refinement;
+  PoseEquations evidence;
   double full_samples = 0;  ///< samples that the silhouette would have if nothing hid or cut it
 
   /// Share of the outline, where it can be judged, at which the image has the step that the pose predicts; 1 without
   /// colour.
   double outline_support() const {
-    return refinement.contour_judged >= 8 ? static_cast<double>(refinement.contour_used) / refinement.contour_judged
+    return evidence.contour_judged >= 8 ? static_cast<double>(evidence.contour_used) / evidence.contour_judged
                                           : 1.0;
   }
 };

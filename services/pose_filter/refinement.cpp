@@ -266,55 +266,71 @@ void FindOutline(const PartModel& model, const CameraModel& camera, const Pose& 
   }
 }
 
+bool FindEvidence(const PartModel& model, const Observation& observation, const Pose& X_CP,
+                  const RefinementOptions& options, RefinementScratch& scratch) {
+  RenderTile(model, observation.camera, X_CP, OwnerMap::kStep, 6, scratch.tile);
+  if (scratch.tile.covered == 0) return false;
+  if (observation.depth)
+    FindVisible(model, observation.camera, X_CP, scratch.tile, options.depth_points, scratch.visible);
+  if (observation.class_map)
+    FindOutline(model, observation.camera, X_CP, scratch.tile, options.contour_points, scratch.outline);
+  return true;
+}
+
+PoseEquations Linearise(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
+                        uint8_t class_bit, const Pose& X_CP, double blend, double outline_bias,
+                        const RefinementOptions& options, const RefinementScratch& scratch) {
+  Normal depth, contour;
+  if (observation.depth)
+    AddDepth(model, observation, owners, part, class_bit, X_CP, scratch.visible, options.first_gate,
+             options.last_gate_sigmas, blend, depth);
+  if (observation.class_map) {
+    const int L = Nearest((1 - blend) * options.first_half_length + blend * options.last_half_length);
+    AddContour(observation, owners, part, class_bit, X_CP, scratch.outline, L, outline_bias, contour);
+  }
+  PoseEquations out;
+  out.depth_used = depth.used;
+  out.contour_used = contour.used;
+  out.contour_judged = contour.judged;
+  out.depth_chi2 = depth.weight > 0 ? depth.chi2 / depth.weight : 0;
+  depth.Temper(options.depth_witnesses);
+  contour.Temper(options.contour_witnesses);
+  out.outline_bias =
+      contour.MarginaliseBias(options.outline_bias, 1 / (options.outline_bias_sigma * options.outline_bias_sigma));
+  out.information = depth.H + contour.H;
+  out.gradient = depth.g + contour.g;
+  return out;
+}
+
+Vector6 RefinementStep(const PoseEquations& equations, double reach, const RefinementOptions& options) {
+  Matrix6 H = equations.information;
+  H.diagonal().head<3>().array() += 1 / (options.prior_position * options.prior_position);
+  H.diagonal().tail<3>().array() += 1 / (options.prior_rotation * options.prior_rotation);
+  const Vector6 step = H.ldlt().solve(equations.gradient);
+  if (!step.allFinite()) return Vector6::Zero();
+  const double length = StepLength(step, reach);
+  return length > options.longest_step ? Vector6(step * (options.longest_step / length)) : step;
+}
+
 RefinementResult Refine(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
                         uint8_t class_bit, const Pose& start, const RefinementOptions& options,
                         RefinementScratch& scratch) {
   RefinementResult result;
   result.X_CP = start;
-  result.outline_bias = options.outline_bias;
+  result.last.outline_bias = options.outline_bias;
   Pose rendered_at = start;
   const double reach = model.extent.diameter / 2;
   for (int k = 0; k < options.iterations; ++k) {
-    const double blend = options.iterations > 1 ? static_cast<double>(k) / (options.iterations - 1) : 1;
-    const Vector6 moved = Difference(rendered_at, result.X_CP);
-    if (k == 0 || moved.head<3>().norm() + moved.tail<3>().norm() * reach > 0.004) {
-      RenderTile(model, observation.camera, result.X_CP, OwnerMap::kStep, 6, scratch.tile);
-      if (scratch.tile.covered == 0) break;
-      if (observation.depth)
-        FindVisible(model, observation.camera, result.X_CP, scratch.tile, options.depth_points, scratch.visible);
-      if (observation.class_map)
-        FindOutline(model, observation.camera, result.X_CP, scratch.tile, options.contour_points, scratch.outline);
+    if (k == 0 || StepLength(Difference(rendered_at, result.X_CP), reach) > 0.004) {
+      if (!FindEvidence(model, observation, result.X_CP, options, scratch)) break;
       rendered_at = result.X_CP;
     }
-    Normal depth, contour;
-    if (observation.depth)
-      AddDepth(model, observation, owners, part, class_bit, result.X_CP, scratch.visible, options.first_gate,
-               options.last_gate_sigmas, blend, depth);
-    if (observation.class_map) {
-      const int L = Nearest((1 - blend) * options.first_half_length + blend * options.last_half_length);
-      AddContour(observation, owners, part, class_bit, result.X_CP, scratch.outline, L, result.outline_bias, contour);
-    }
-    result.depth_used = depth.used;
-    result.contour_used = contour.used;
-    result.contour_judged = contour.judged;
-    result.depth_chi2 = depth.weight > 0 ? depth.chi2 / depth.weight : 0;
-    depth.Temper(options.depth_witnesses);
-    contour.Temper(options.contour_witnesses);
-    result.outline_bias =
-        contour.MarginaliseBias(options.outline_bias, 1 / (options.outline_bias_sigma * options.outline_bias_sigma));
-    result.information = depth.H + contour.H;
-    Matrix6 H = result.information;
-    Vector6 g = depth.g + contour.g;
-    const double wp = 1 / (options.prior_position * options.prior_position),
-                 wr = 1 / (options.prior_rotation * options.prior_rotation);
-    H.diagonal().head<3>().array() += wp;
-    H.diagonal().tail<3>().array() += wr;
-    Vector6 step = H.ldlt().solve(g);
-    if (!step.allFinite()) break;
-    const double length = step.head<3>().norm() + reach * step.tail<3>().norm();
-    if (length > 0.05) step *= 0.05 / length;
+    const double blend = options.iterations > 1 ? static_cast<double>(k) / (options.iterations - 1) : 1;
+    result.last = Linearise(model, observation, owners, part, class_bit, result.X_CP, blend,
+                            result.last.outline_bias, options, scratch);
+    const Vector6 step = RefinementStep(result.last, reach, options);
     result.X_CP = Perturb(result.X_CP, step);
-    if (length < 2e-4 && k > 0) break;
+    if (StepLength(step, reach) < 2e-4 && k > 0) break;
   }
   return result;
 }

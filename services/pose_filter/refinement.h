@@ -28,16 +28,24 @@ struct RefinementOptions {
   double outline_bias_sigma = 0.4;  ///< px, of that expectation
   double prior_position = 0.10;  ///< m, weak prior around the start: keeps the step finite where nothing constrains it
   double prior_rotation = 0.6;   ///< rad
+  double longest_step = 0.05;    ///< m, of the part's farthest point in one iteration
+};
+
+/// What the image says about a pose, linearised there. Information and gradient are of Perturb(X_CP, .), camera frame,
+/// tempered, without any prior.
+struct PoseEquations {
+  Matrix6 information = Matrix6::Zero();
+  Vector6 gradient = Vector6::Zero();
+  int depth_used = 0;       ///< readings
+  int contour_used = 0;     ///< outline points
+  int contour_judged = 0;   ///< outline points where nothing hid the step, if there was one
+  double outline_bias = 0;  ///< px, as estimated
+  double depth_chi2 = 0;    ///< mean squared residual over sigma
 };
 
 struct RefinementResult {
   Pose X_CP = Pose::Identity();
-  Matrix6 information = Matrix6::Zero();  ///< of Perturb(X_CP, .), camera frame, tempered; prior not included
-  int depth_used = 0;                     ///< readings in the last iteration
-  int contour_used = 0;                   ///< outline points in the last iteration
-  int contour_judged = 0;                 ///< outline points where nothing hid the step, if there was one
-  double outline_bias = 0;                ///< px, as estimated
-  double depth_chi2 = 0;                  ///< mean squared residual over sigma, last iteration
+  PoseEquations last;  ///< of the last iteration
 };
 
 /// Buffers of one call, kept by the caller so that the steady loop allocates nothing.
@@ -54,6 +62,24 @@ struct RefinementScratch {
 RefinementResult Refine(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
                         uint8_t class_bit, const Pose& X_CP, const RefinementOptions& options,
                         RefinementScratch& scratch);
+
+/// The pieces of a refinement, for those that join several parts into one body.
+/// Renders the part and picks its visible surface points and its outline into `scratch`. @returns false outside the
+/// image
+bool FindEvidence(const PartModel& model, const Observation& observation, const Pose& X_CP,
+                  const RefinementOptions& options, RefinementScratch& scratch);
+/// @param blend 0: gates of the first iteration, 1: of the last
+/// @param outline_bias px, as estimated last
+PoseEquations Linearise(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
+                        uint8_t class_bit, const Pose& X_CP, double blend, double outline_bias,
+                        const RefinementOptions& options, const RefinementScratch& scratch);
+/// Solution of the equations with the weak prior, no longer than allowed; zero if there is none.
+/// @param reach m, from the body's origin to its farthest point
+Vector6 RefinementStep(const PoseEquations& equations, double reach, const RefinementOptions& options);
+/// How far a step moves the body's farthest point, m, at most.
+inline double StepLength(const Vector6& step, double reach) {
+  return step.head<3>().norm() + reach * step.tail<3>().norm();
+}
 
 /// Points of the outer outline at a pose, evenly spread over its length; hidden ones are left out.
 void FindOutline(const PartModel& model, const CameraModel& camera, const Pose& X_CP, const DepthTile& tile, int points,

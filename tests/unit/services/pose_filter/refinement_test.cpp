@@ -44,7 +44,7 @@ TEST(Refinement, ConvergesFromFiveMillimetresAndFourDegrees) {
     EXPECT_LT(PositionError(r.X_CP, truth), 0.0007) << k;
     EXPECT_LT(AngleError(r.X_CP, truth), 2 * kDegree) << k;
     EXPECT_GT(r.depth_used, 30);
-    EXPECT_GT(r.contour_used, 0.8 * r.contour_judged);
+    EXPECT_GT(r.last.contour_used, 0.8 * r.last.contour_judged);
   }
 }
 

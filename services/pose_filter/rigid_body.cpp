@@ -1,0 +1,207 @@
+#include "services/pose_filter/rigid_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/pose_filter/score.h"
+
+namespace coach {
+namespace {
+
+/// A point of the body's visible surface.
+struct ColourPoint {
+  Vector3 p_C;
+  uint8_t class_bit;
+  int part;
+};
+
+/// Visible points of the body at a pose, evenly over its members.
+std::vector<ColourPoint> VisibleColour(const RigidBody& body, const Pose& X_CG, int most) {
+  std::vector<ColourPoint> facing;
+  for (const RigidMember& m : body) {
+    const Pose X_CP = X_CG * m.X_GP;
+    for (size_t i = 0; i < m.points->size(); ++i) {
+      const Vector3 p = X_CP * Vector3(m.points->x[i], m.points->y[i], m.points->z[i]);
+      const Vector3 n = X_CP.linear() * Vector3(m.points->nx[i], m.points->ny[i], m.points->nz[i]);
+      if (-n.dot(p) > 0.2 * p.norm()) facing.push_back({p, m.class_bit, m.part});
+    }
+  }
+  std::vector<ColourPoint> out;
+  const size_t stride = std::max<size_t>(1, facing.size() / static_cast<size_t>(most));
+  for (size_t i = 0; i < facing.size(); i += stride) out.push_back(facing[i]);
+  return out;
+}
+
+/// A turn about the body's middle and a shift in the image.
+struct Proposal {
+  double matched = 0;
+  Matrix3 turn = Matrix3::Identity();
+  double du = 0, dv = 0;
+};
+
+/// What the pixel under a shifted point says of the colour alone.
+double ColourMatch(const ColourPoint& point, int x, int y, double depth, const Observation& o, const OwnerMap& owners) {
+  if (!o.Inside(x, y)) return 0;
+  const double z = o.Depth(x, y);
+  if (o.Classes(x, y) & point.class_bit) {
+    const double other = owners.OtherDepth(x, y, point.part);
+    return other > 0 && (z == 0 || std::abs(z - other) < 0.02) ? 0 : 1;
+  }
+  return z > 0 && z < depth - 0.05 ? 0 : -0.7;
+}
+
+std::vector<Matrix3> Turns(const Vector3& ray, const Vector3& normal, const BodySearchOptions& options) {
+  std::vector<Matrix3> out{Matrix3::Identity()};
+  for (int k = 1; k <= options.turns; ++k) {
+    for (const double sign : {1.0, -1.0}) {
+      out.push_back(ExpRotation(sign * k * options.turn * ray));
+      out.push_back(ExpRotation(sign * k * options.turn * normal));
+    }
+  }
+  return out;
+}
+
+/// The shift moved along its ray to where most of the matching readings are.
+std::optional<Pose> AtMeasuredDepth(const Proposal& proposal, const std::vector<ColourPoint>& points,
+                                    const Vector3& middle, const Pose& X_CG, const Observation& o,
+                                    std::vector<double>& ratios) {
+  ratios.clear();
+  const CameraModel& camera = o.camera;
+  for (const ColourPoint& point : points) {
+    const Vector3 p = middle + proposal.turn * (point.p_C - middle);
+    const int x = static_cast<int>(camera.fx * p.x() / p.z() + camera.cx + proposal.du);
+    const int y = static_cast<int>(camera.fy * p.y() / p.z() + camera.cy + proposal.dv);
+    if (!o.Inside(x, y) || !(o.Classes(x, y) & point.class_bit)) continue;
+    const double z = o.Depth(x, y);
+    if (z > 0) ratios.push_back(z - p.z());
+  }
+  const double z = middle.z();
+  double dz = 0;
+  if (ratios.size() >= 3) {
+    std::nth_element(ratios.begin(), ratios.begin() + static_cast<long>(ratios.size() / 2), ratios.end());
+    dz = ratios[ratios.size() / 2];
+  }
+  if (std::abs(dz) > 0.15) return std::nullopt;
+  const double u = camera.fx * middle.x() / z + camera.cx + proposal.du,
+               v = camera.fy * middle.y() / z + camera.cy + proposal.dv;
+  const Vector3 target = camera.BackProject({u, v}, z + dz);
+  Pose X;
+  X.linear() = proposal.turn * X_CG.linear();
+  X.translation() = target + proposal.turn * (X_CG.translation() - middle);
+  return X;
+}
+
+float ScoreBodyPoints(const RigidBody& body, const Observation& o, const OwnerMap& owners, const Pose& X_CG) {
+  float sum = 0;
+  for (const RigidMember& m : body) sum += ScorePoints(*m.points, o, owners, m.part, m.class_bit, X_CG * m.X_GP);
+  return sum;
+}
+
+}  // namespace
+
+Pose RefineBody(const RigidBody& body, const Observation& observation, const OwnerMap& owners, const Pose& start,
+                const RefinementOptions& options, RefinementScratch& scratch) {
+  Pose X_CG = start;
+  double reach = 0;
+  for (const RigidMember& m : body) reach = std::max(reach, m.X_GP.translation().norm() + m.model->extent.diameter / 2);
+  for (int k = 0; k < options.iterations; ++k) {
+    const double blend = options.iterations > 1 ? static_cast<double>(k) / (options.iterations - 1) : 1;
+    PoseEquations sum;
+    for (const RigidMember& m : body) {
+      const Pose X_CP = X_CG * m.X_GP;
+      if (!FindEvidence(*m.model, observation, X_CP, options, scratch)) continue;
+      const PoseEquations e = Linearise(*m.model, observation, owners, m.part, m.class_bit, X_CP, blend,
+                                        options.outline_bias, options, scratch);
+      // Turning the body by w about its origin also shifts the member by w x arm.
+      const Vector3 arm = X_CG.linear() * m.X_GP.translation();
+      Matrix6 A = Matrix6::Identity();
+      A.topRightCorner<3, 3>() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
+      sum.information.noalias() += A.transpose() * e.information * A;
+      sum.gradient.noalias() += A.transpose() * e.gradient;
+    }
+    const Vector6 step = RefinementStep(sum, reach, options);
+    X_CG = Perturb(X_CG, step);
+    if (StepLength(step, reach) < 5e-4 && k > 0) break;
+  }
+  return X_CG;
+}
+
+Score ScoreBody(const RigidBody& body, const Observation& observation, const OwnerMap& owners, const Pose& X_CG,
+                RefinementScratch& scratch) {
+  Score sum;
+  for (const RigidMember& m : body) {
+    RenderTile(*m.model, observation.camera, X_CG * m.X_GP, OwnerMap::kStep, 0, scratch.tile);
+    const Score s = ScoreTile(scratch.tile, observation, owners, m.part, m.class_bit);
+    sum.log_likelihood += s.log_likelihood;
+    sum.covered += s.covered;
+    sum.hidden += s.hidden;
+    sum.inlier += s.inlier;
+    sum.see_through += s.see_through;
+    sum.wrong_colour += s.wrong_colour;
+    sum.no_reading += s.no_reading;
+  }
+  return sum;
+}
+
+Pose SearchBody(const RigidBody& body, const Observation& o, const OwnerMap& owners, const Pose& X_CG,
+                const Vector3& normal_C, double dt, const BodySearchOptions& options, RefinementScratch& scratch) {
+  std::vector<Pose> starts{X_CG};
+  const std::vector<ColourPoint> points = VisibleColour(body, X_CG, options.points);
+  if (o.class_map && !points.empty()) {
+    Vector3 middle = Vector3::Zero();
+    for (const ColourPoint& p : points) middle += p.p_C / static_cast<double>(points.size());
+    const int reach = static_cast<int>((options.fastest * dt + options.slack) * o.camera.fx / middle.z() /
+                                       options.shift_step);
+    std::vector<Proposal> proposals;
+    std::vector<Eigen::Vector3d> projected(points.size());
+    for (const Matrix3& turn : Turns(middle.normalized(), normal_C, options)) {
+      for (size_t i = 0; i < points.size(); ++i) {
+        const Vector3 p = middle + turn * (points[i].p_C - middle);
+        projected[i] = {o.camera.fx * p.x() / p.z() + o.camera.cx, o.camera.fy * p.y() / p.z() + o.camera.cy, p.z()};
+      }
+      for (int j = -reach; j <= reach; ++j) {
+        for (int i = -reach; i <= reach; ++i) {
+          if (i * i + j * j > reach * reach) continue;
+          Proposal proposal{0, turn, i * options.shift_step, j * options.shift_step};
+          for (size_t k = 0; k < points.size(); ++k)
+            proposal.matched += ColourMatch(points[k], static_cast<int>(projected[k].x() + proposal.du),
+                                            static_cast<int>(projected[k].y() + proposal.dv), projected[k].z(), o, owners);
+          if (proposal.matched > 0.1 * static_cast<double>(points.size())) proposals.push_back(proposal);
+        }
+      }
+    }
+    const size_t kept = std::min<size_t>(proposals.size(), static_cast<size_t>(options.scored));
+    std::partial_sort(proposals.begin(), proposals.begin() + static_cast<long>(kept), proposals.end(),
+                      [](const Proposal& a, const Proposal& b) { return a.matched > b.matched; });
+    struct Ranked {
+      float score;
+      Pose X_CG;
+    };
+    std::vector<Ranked> ranked;
+    std::vector<double> scratch_depths;
+    for (size_t k = 0; k < kept; ++k) {
+      if (const auto X = AtMeasuredDepth(proposals[k], points, middle, X_CG, o, scratch_depths))
+        ranked.push_back({ScoreBodyPoints(body, o, owners, *X), *X});
+    }
+    std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
+    for (const Ranked& r : ranked) {
+      if (static_cast<int>(starts.size()) > options.refined) break;
+      const bool known = std::any_of(starts.begin(), starts.end(), [&](const Pose& X) {
+        return StepLength(Difference(X, r.X_CG), 0.05) < 0.015;
+      });
+      if (!known) starts.push_back(r.X_CG);
+    }
+  }
+  Pose best = X_CG;
+  double best_likelihood = -1e18;
+  for (const Pose& start : starts) {
+    const Pose X = RefineBody(body, o, owners, start, options.refinement, scratch);
+    const double likelihood = ScoreBody(body, o, owners, X, scratch).log_likelihood;
+    if (likelihood <= best_likelihood) continue;
+    best_likelihood = likelihood;
+    best = X;
+  }
+  return best;
+}
+
+}  // namespace coach
