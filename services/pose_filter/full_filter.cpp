@@ -53,7 +53,7 @@ void FullFilter::Suggest(const std::vector<Pose>& X_CP) {
   if (X_CP.size() == task_.parts.size()) suggested_ = X_CP;
 }
 
-PartPoses FullFilter::Step(const FilterInput& input) {
+const PartPoses& FullFilter::Step(const FilterInput& input) {
   Observation observation;
   observation.camera = input.camera;
   if (!(input.camera == camera_model_)) {
@@ -78,20 +78,15 @@ PartPoses FullFilter::Step(const FilterInput& input) {
   observation.table = PlaneOf(camera_.X_TC());
   if (steps_ % 15 == 0) area_.Add(observation, camera_.X_TC());
   BuildOwners(observation, dt);
-  std::vector<int> order(tracks_.size());
-  std::iota(order.begin(), order.end(), 0);
-  // The best seen first: they carry those that are linked to them.
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return tracks_[a].visible_fraction * tracks_[a].confidence > tracks_[b].visible_fraction * tracks_[b].confidence;
-  });
+  OrderParts();
   UpdateLinks(input);
-  FollowBodies(order, observation, dt);
+  FollowBodies(observation, dt);
   updated_.assign(tracks_.size(), false);
   std::vector<Pose>& before = poses_before_;
   before.clear();
   for (const Track& track : tracks_) before.push_back(track.X_TP);
   TrySuggestions(observation);
-  for (const int part : order) {
+  for (const int part : order_) {
     Track& track = tracks_[part];
     if (updated_[part]) continue;
     if (track.status == PartStatus::kLost) {
@@ -112,17 +107,18 @@ PartPoses FullFilter::Step(const FilterInput& input) {
   RepairIdentities(observation);
   foreign_.Find(observation, owners_, camera_.X_TC(), area_, dt);
   ++steps_;
-  return Output(input);
+  Output(input);
+  return output_;
 }
 
-std::vector<RigidBody> FullFilter::Bodies(const std::vector<int>& best_seen_first, std::vector<Pose>& X_TG) const {
+std::vector<RigidBody> FullFilter::Bodies() const {
   std::vector<RigidBody> bodies;
   std::vector<bool> taken(tracks_.size(), false);
   const auto add = [&](RigidBody& body, int part, const Pose& X_GP) {
     taken[part] = true;
     body.push_back({&ShapeOf(part).model, &ShapeOf(part).search_points, part, bit_of_part_[part], X_GP});
   };
-  for (const int root : best_seen_first) {
+  for (const int root : order_) {
     if (taken[root] || tracks_[root].missing()) continue;
     RigidBody body;
     add(body, root, Pose::Identity());
@@ -136,36 +132,47 @@ std::vector<RigidBody> FullFilter::Bodies(const std::vector<int>& best_seen_firs
       }
     }
     bodies.push_back(std::move(body));
-    X_TG.push_back(tracks_[root].X_TP);
   }
   return bodies;
 }
 
-void FullFilter::FollowBodies(const std::vector<int>& best_seen_first, const Observation& observation, double dt) {
+void FullFilter::FollowBodies(const Observation& observation, double dt) {
   followed_.assign(tracks_.size(), std::nullopt);
-  std::vector<Pose> X_TG;
-  const std::vector<RigidBody> bodies = Bodies(best_seen_first, X_TG);
-  for (size_t b = 0; b < bodies.size(); ++b) {
-    const RigidBody& body = bodies[b];
+  if (!observation.depth || !observation.class_map) return;
+  const auto at_prediction = [&](int part) {
+    return ScoreTile(tiles_[part], observation, owners_, part, bit_of_part_[part]);
+  };
+  const auto astray = [&](const Score& score) {
+    return score.open() >= 20 && score.agreement() < options_.follow_agreement;
+  };
+  if (std::none_of(order_.begin(), order_.end(),
+                   [&](int part) { return !tracks_[part].missing() && astray(at_prediction(part)); }))
+    return;
+  const Pose X_CT = camera_.X_TC().inverse();
+  for (const RigidBody& body : Bodies()) {
     Score score;
-    for (const RigidMember& m : body) {
-      const Score s = ScoreTile(tiles_[m.part], observation, owners_, m.part, m.class_bit);
-      score.covered += s.covered;
-      score.hidden += s.hidden;
-      score.inlier += s.inlier;
-      score.no_reading += s.no_reading;
-    }
-    if (score.open() < 20 || score.agreement() > options_.follow_agreement) continue;
+    for (const RigidMember& m : body) score += at_prediction(m.part);
+    if (!astray(score)) continue;
     for (const RigidMember& m : body) owners_.Remove(m.part, tiles_[m.part]);
-    const Pose predicted = PredictPose(tracks_[body.front().part], dt);
-    const Pose X_CG = SearchBody(body, observation, owners_, camera_.X_TC().inverse() * predicted,
-                                 camera_.X_TC().linear().transpose().col(2), dt, options_.body, scratch_);
+    const std::optional<Pose> X_CG =
+        SearchBody(body, observation, owners_, X_CT * PredictPose(tracks_[body.front().part], dt), X_CT.linear().col(2),
+                   dt, options_.body, scratch_);
     for (const RigidMember& m : body) {
-      followed_[m.part] = camera_.X_TC() * X_CG * m.X_GP;
-      RenderTile(*m.model, observation.camera, X_CG * m.X_GP, OwnerMap::kStep, 0, tiles_[m.part]);
+      if (X_CG) {
+        followed_[m.part] = camera_.X_TC() * *X_CG * m.X_GP;
+        RenderTile(*m.model, observation.camera, *X_CG * m.X_GP, OwnerMap::kStep, 0, tiles_[m.part]);
+      }
       if (!tracks_[m.part].missing()) owners_.Add(m.part, tiles_[m.part]);
     }
   }
+}
+
+void FullFilter::OrderParts() {
+  order_.resize(tracks_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  const auto seen = [&](int part) { return tracks_[part].visible_fraction * tracks_[part].confidence; };
+  std::sort(order_.begin(), order_.end(),
+            [&](int a, int b) { return seen(a) > seen(b) || (seen(a) == seen(b) && a < b); });
 }
 
 void FullFilter::TrySuggestions(const Observation& observation) {
@@ -254,28 +261,34 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   // that look almost the same when little is seen. The likelihood counts neighbouring pixels as witnesses of their own,
   // so the prior is measured in shares of it.
   const Pose expected = X_CT * (carried ? *carried : predicted);
-  const double unit = std::max(options_.least_jump_cost, options_.jump_cost * best.score.log_likelihood);
-  const double reach = 0.03 + 0.5 * track.velocity.head<3>().norm() * dt, turn = track.moving ? 0.7 : 0.4;
+  const double reach = carried ? options_.link_reach : 0.03 + 0.5 * track.velocity.head<3>().norm() * dt;
+  const double turn = carried ? options_.link_turn : track.moving ? 0.7 : 0.4;
   const auto posterior = [&](const PoseCandidate& c) {
-    const Vector6 away = Difference(expected, c.X_CP);
-    const double distance =
-        away.head<3>().squaredNorm() / (reach * reach) + away.tail<3>().squaredNorm() / (turn * turn);
-    return c.score.log_likelihood - unit * std::min(3.0, distance) - CollisionCost(part, c);
+    return c.score.log_likelihood - JumpCost(expected, reach, turn, c) - CollisionCost(part, c);
   };
   const auto consider = [&](const Pose& X_CP) {
     const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit, X_CP, options_.refinement, scratch_);
+    fprintf(stderr, "%ld   consider ll %.0f agr %.2f post %.0f coll %.0f dexp %.3f %.2f\n", steps_,
+            c.score.log_likelihood, c.score.agreement(), posterior(c), CollisionCost(part, c),
+            Difference(expected, c.X_CP).head<3>().norm(), Difference(expected, c.X_CP).tail<3>().norm());
     if (posterior(c) > posterior(best)) best = c;
   };
-  const Vector3 first = best.X_CP.translation();
+  fprintf(stderr,
+          "%ld part %d followed %d carried %d first ll %.0f agr %.2f post %.0f coll %.0f dexp %.3f %.2f open %.2f\n",
+          steps_, part, followed_[part].has_value(), carried.has_value(), best.score.log_likelihood,
+          best.score.agreement(), posterior(best), CollisionCost(part, best),
+          Difference(expected, best.X_CP).head<3>().norm(), Difference(expected, best.X_CP).tail<3>().norm(),
+          best.score.open() / best.full_samples);
+  const Pose first = best.X_CP;
   if (const auto particle = BestParticle(part, observation, predicted, track.X_TP, best.X_CP, dt)) consider(*particle);
   const Pose rest = X_CT * track.X_TP;
   if (followed_[part]) consider(X_CT * coasted);
-  if (track.moving && (rest.translation() - first).norm() > 0.004) consider(rest);
+  if (track.moving && StepLength(Difference(first, rest), 0.05) > 0.004) consider(rest);
   if (carried) {
     const Vector6 away = Difference(best.X_CP, expected);
-    if (away.head<3>().norm() > 0.003 || away.tail<3>().norm() > 0.05) consider(expected);
+    if (StepLength(away, 0.05) > 0.004) consider(expected);
   }
-  TestRivals(part, observation, dt, best);
+  TestRivals(part, observation, dt, carried ? &expected : nullptr, best);
   const double in_image = InImageFraction(shape.model, observation.camera, best.X_CP);
   const double open = best.full_samples > 0 ? best.score.open() / best.full_samples : 0;
   if (!observation.depth && !observation.class_map) {
@@ -308,11 +321,19 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   Place(part, observation);
 }
 
+double FullFilter::JumpCost(const Pose& expected, double reach, double turn, const PoseCandidate& candidate) const {
+  const Vector6 away = Difference(expected, candidate.X_CP);
+  const double distance = away.head<3>().squaredNorm() / (reach * reach) + away.tail<3>().squaredNorm() / (turn * turn);
+  return std::max(options_.least_jump_cost, options_.jump_cost * candidate.score.log_likelihood) *
+         std::min(3.0, distance);
+}
+
 double FullFilter::CollisionCost(int part, const PoseCandidate& candidate) const {
   const Pose X_TP = camera_.X_TC() * candidate.X_CP;
   double overlap = 0;
   for (size_t k = 0; k < tracks_.size(); ++k) {
-    if (static_cast<int>(k) == part || tracks_[k].missing()) continue;
+    // What is joined overlaps a little, as measured; how the two lie to each other the link says better.
+    if (static_cast<int>(k) == part || tracks_[k].missing() || Linked(part, static_cast<int>(k))) continue;
     overlap += pairs_.Overlap(part, X_TP, static_cast<int>(k), tracks_[k].X_TP, options_.allowed_overlap);
   }
   return std::min(1.0, overlap / options_.full_overlap) * options_.collision_cost *
@@ -348,9 +369,14 @@ void FullFilter::RepairIdentities(const Observation& observation) {
   }
 }
 
-void FullFilter::TestRivals(int part, const Observation& observation, double dt, PoseCandidate& best) {
+void FullFilter::TestRivals(int part, const Observation& observation, double dt, const Pose* linked_X_CP,
+                            PoseCandidate& best) {
   Track& track = tracks_[part];
   const Shape& shape = ShapeOf(part);
+  const auto value = [&](const PoseCandidate& c) {
+    return c.score.log_likelihood - CollisionCost(part, c) -
+           (linked_X_CP ? JumpCost(*linked_X_CP, options_.link_reach, options_.link_turn, c) : 0);
+  };
   const size_t n = shape.model.near_symmetries.size();
   track.rival.resize(n, 0.0f);
   track.seen_for = track.missing() ? 0 : track.seen_for + dt;
@@ -366,8 +392,7 @@ void FullFilter::TestRivals(int part, const Observation& observation, double dt,
     const PoseCandidate c =
         Polish(shape.model, observation, owners_, part, bit_of_part_[part], X, options_.refinement, scratch_);
     // Small but lasting differences decide: pixels are no independent witnesses, frames nearly are.
-    const double gain =
-        c.score.log_likelihood - CollisionCost(part, c) - best.score.log_likelihood + CollisionCost(part, best);
+    const double gain = value(c) - value(best);
     const double unit = std::max(60.0, options_.rival_gain * std::abs(best.score.log_likelihood));
     track.rival[which] = static_cast<float>(std::clamp(track.rival[which] + gain / unit - 0.5, 0.0, 3.0));
     if (track.rival[which] < 1.5f) continue;
@@ -405,6 +430,12 @@ void FullFilter::UpdateLinks(const FilterInput& input) {
     }
   }
   links_ = std::move(links);
+}
+
+bool FullFilter::Linked(int part, int other) const {
+  return std::any_of(links_.begin(), links_.end(), [&](const Link& link) {
+    return link.known && std::minmax(link.part_a, link.part_b) == std::minmax(part, other);
+  });
 }
 
 std::optional<Pose> FullFilter::CarriedBy(int part, Matrix6& covariance) const {
@@ -510,19 +541,18 @@ void FullFilter::Recover(const Observation& observation) {
   }
 }
 
-PartPoses FullFilter::Output(const FilterInput& input) {
-  PartPoses out;
-  out.utime = input.utime;
-  out.received_utime = input.received_utime;
-  out.sequence = input.sequence;
-  out.X_TC = camera_.X_TC();
-  out.X_TC_covariance = camera_.covariance();
-  out.table_found = camera_.table_seen();
-  out.table_residual = camera_.table().residual;
-  for (const Track& track : tracks_) out.parts.push_back(Publish(track, options_.track));
-  out.pairs = pairs_.Find(input.utime, tracks_);
-  out.foreign = foreign_.blobs();
-  return out;
+void FullFilter::Output(const FilterInput& input) {
+  output_.utime = input.utime;
+  output_.received_utime = input.received_utime;
+  output_.sequence = input.sequence;
+  output_.X_TC = camera_.X_TC();
+  output_.X_TC_covariance = camera_.covariance();
+  output_.table_found = camera_.table_seen();
+  output_.table_residual = camera_.table().residual;
+  output_.parts.clear();
+  for (const Track& track : tracks_) output_.parts.push_back(Publish(track, options_.track));
+  pairs_.Find(input.utime, tracks_, output_.pairs);
+  output_.foreign = foreign_.blobs();
 }
 
 }  // namespace coach

@@ -23,6 +23,8 @@ struct FullFilterOptions {
   double link_probability = 0.6;  ///< from here on a believed connection links two parts
   double link_position = 0.0015;  ///< m, play of a link
   double link_rotation = 0.015;   ///< rad
+  double link_reach = 0.015;      ///< m, from where a partner expects a part, that costs as much as a jump
+  double link_turn = 0.2;         ///< rad
   /// Of the likelihood, for a pose one reach (3 cm and more) or turn (0.4 rad) from the expected one; grows with the
   /// square, at most three times.
   double jump_cost = 0.03;
@@ -50,7 +52,7 @@ class FullFilter final : public PoseFilter {
  public:
   FullFilter(const Task& task, const FullFilterOptions& options, uint64_t seed, ParallelFor parallel_for);
 
-  PartPoses Step(const FilterInput& input) override;
+  const PartPoses& Step(const FilterInput& input) override;
   void Reset() override;
   void Suggest(const std::vector<Pose>& X_CP) override;
 
@@ -76,15 +78,21 @@ class FullFilter final : public PoseFilter {
   /// beyond doubt.
   void RepairIdentities(const Observation& observation);
   /// Tries poses that look almost the same as `best` and takes one over if it has been the better one for some frames.
-  void TestRivals(int part, const Observation& observation, double dt, PoseCandidate& best);
+  /// @param linked_X_CP where a linked partner expects the part, or null
+  void TestRivals(int part, const Observation& observation, double dt, const Pose* linked_X_CP, PoseCandidate& best);
+  /// What being away from the expected pose costs, nats.
+  double JumpCost(const Pose& expected, double reach, double turn, const PoseCandidate& candidate) const;
   /// Equation [5] as a cost (nats) instead of a factor: measured poses of parts in contact overlap a little.
   double CollisionCost(int part, const PoseCandidate& candidate) const;
   void UpdateLinks(const FilterInput& input);
+  bool Linked(int part, int other) const;
   std::optional<Pose> CarriedBy(int part, Matrix6& covariance) const;
+  /// The best seen first: they carry those that are linked to them.
+  void OrderParts();
   /// The bodies that the links make of the parts seen last, parts without links included.
-  std::vector<RigidBody> Bodies(const std::vector<int>& best_seen_first, std::vector<Pose>& X_TG) const;
+  std::vector<RigidBody> Bodies() const;
   /// Looks for the bodies that are not where they were predicted and notes where their parts are now.
-  void FollowBodies(const std::vector<int>& best_seen_first, const Observation& observation, double dt);
+  void FollowBodies(const Observation& observation, double dt);
   void UpdateTrack(int part, const Observation& observation, double dt);
   std::optional<Pose> BestParticle(int part, const Observation& observation, const Pose& predicted, const Pose& rest,
                                    const Pose& refined, double dt);
@@ -94,7 +102,7 @@ class FullFilter final : public PoseFilter {
   bool Plausible(int part, const PoseCandidate& found, bool distractor) const;
   void Recover(const Observation& observation);
   void Place(int part, const Observation& observation);
-  PartPoses Output(const FilterInput& input);
+  void Output(const FilterInput& input);
 
   Task task_;
   FullFilterOptions options_;
@@ -125,6 +133,8 @@ class FullFilter final : public PoseFilter {
   PairFinder pairs_;
   RefinementScratch scratch_;
   VisiblePoints particle_points_;
+  std::vector<int> order_;  // parts, best seen first
+  PartPoses output_;
 };
 
 }  // namespace coach

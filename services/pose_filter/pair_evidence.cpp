@@ -77,16 +77,22 @@ double PairFinder::Overlap(int part_a, const Pose& X_TA, int part_b, const Pose&
   return static_cast<double>(inside) / static_cast<double>(surface_[type_a].size());
 }
 
-std::vector<PairEvidence> PairFinder::Find(int64_t utime, const std::vector<Track>& tracks) {
-  Moment now{utime, {}, {}};
+void PairFinder::Find(int64_t utime, const std::vector<Track>& tracks, std::vector<PairEvidence>& out) {
+  out.clear();
+  if (!history_.empty() && utime <= history_.back().utime) history_.clear();
+  // The oldest moment that is not needed any more becomes this one.
+  const auto old = [&](const Moment& m) { return static_cast<double>(utime - m.utime) * 1e-6 > options_.window; };
+  const auto first = std::find_if_not(history_.begin(), history_.end(), old);
+  Moment now;
+  if (first != history_.begin()) now = std::move(history_.front());
+  history_.erase(history_.begin(), first);
+  now.utime = utime;
+  now.X_TP.clear();
+  now.seen.clear();
   for (const Track& t : tracks) {
     now.X_TP.push_back(t.X_TP_free);
     now.seen.push_back(!t.missing());
   }
-  if (!history_.empty() && utime <= history_.back().utime) history_.clear();
-  while (!history_.empty() && static_cast<double>(utime - history_.front().utime) * 1e-6 > options_.window)
-    history_.pop_front();
-  std::vector<PairEvidence> out;
   Matrix6 floor = Matrix6::Zero();
   floor.diagonal().head<3>().setConstant(options_.floor_position * options_.floor_position);
   floor.diagonal().tail<3>().setConstant(options_.floor_rotation * options_.floor_rotation);
@@ -126,7 +132,6 @@ std::vector<PairEvidence> PairFinder::Find(int64_t utime, const std::vector<Trac
     }
   }
   history_.push_back(std::move(now));
-  return out;
 }
 
 }  // namespace coach

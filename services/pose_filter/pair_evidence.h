@@ -2,7 +2,6 @@
 // imposed on.
 #pragma once
 
-#include <deque>
 #include <vector>
 
 #include "common/assembly/part_poses.h"
@@ -39,13 +38,13 @@ class PairFinder {
   /// Share of a's surface that lies deeper than `allowed` (m) inside b, 0..1.
   double Overlap(int part_a, const Pose& X_TA, int part_b, const Pose& X_TB, double allowed) const;
 
-  /// @param tracks of this frame, in the order of Task::parts
-  std::vector<PairEvidence> Find(int64_t utime, const std::vector<Track>& tracks);
+  /// @param tracks of this frame, in the order of Task::parts. @param out is overwritten
+  void Find(int64_t utime, const std::vector<Track>& tracks, std::vector<PairEvidence>& out);
   void Reset() { history_.clear(); }
 
  private:
   struct Moment {
-    int64_t utime;
+    int64_t utime = 0;
     std::vector<Pose> X_TP;
     std::vector<bool> seen;
   };
@@ -58,7 +57,7 @@ class PairFinder {
   std::vector<std::vector<SurfacePoint>> surface_;  // one a type
   std::vector<MeshExtent> extents_;
   std::vector<std::vector<Candidate>> candidates_;  // of types a * T + b, symmetric equivalents written out
-  std::deque<Moment> history_;
+  std::vector<Moment> history_;                     // oldest first
 };
 
 }  // namespace coach

@@ -66,7 +66,7 @@ void PaperFilter::Reset() {
 
 void PaperFilter::Suggest(const std::vector<Pose>& X_CP) { suggested_ = X_CP; }
 
-PartPoses PaperFilter::Step(const FilterInput& input) {
+const PartPoses& PaperFilter::Step(const FilterInput& input) {
   const double dt = started_ ? static_cast<double>(input.utime - last_utime_) * 1e-6 : 1 / kStepsPerSecond;
   last_utime_ = input.utime;
   started_ = true;
@@ -85,7 +85,8 @@ PartPoses PaperFilter::Step(const FilterInput& input) {
     }
     Finish();
   }
-  return Output(input);
+  output_ = Output(input);
+  return output_;
 }
 
 void PaperFilter::TakeImage(const FilterInput& input) {

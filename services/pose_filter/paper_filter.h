@@ -48,7 +48,7 @@ class PaperFilter final : public PoseFilter {
   /// @throws std::invalid_argument if an option is out of its range or a type has no mesh.
   PaperFilter(const Task& task, const PaperFilterOptions& options, uint64_t seed);
 
-  PartPoses Step(const FilterInput& input) override;
+  const PartPoses& Step(const FilterInput& input) override;
   void Reset() override;
   void Suggest(const std::vector<Pose>& X_CP) override;
 
@@ -109,6 +109,7 @@ class PaperFilter final : public PoseFilter {
   std::vector<RigidLink> links_;
   std::vector<RigidBodies> bodies_;  ///< for each number of links
   RenderedDepth merged_, tile_;
+  PartPoses output_;
 };
 
 }  // namespace coach

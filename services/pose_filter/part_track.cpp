@@ -25,6 +25,8 @@ void Describe(const PoseCandidate& candidate, Track& track) {
   track.pixels = candidate.score.inlier * OwnerMap::kStep * OwnerMap::kStep;
 }
 
+constexpr double kLongestPrediction = 0.2;  // s; hands don't keep their way for longer
+
 /// What dt adds to the uncertainty of a part that is seen.
 Matrix6 Growth(const Track& track, double dt, const TrackOptions& options) {
   if (track.moving) return Diagonal(options.moving_position * dt, options.moving_rotation * dt);
@@ -35,7 +37,7 @@ Matrix6 Growth(const Track& track, double dt, const TrackOptions& options) {
 
 Pose PredictPose(const Track& track, double dt) {
   if (!track.moving || track.status != PartStatus::kTracked) return track.X_TP;
-  return Perturb(track.X_TP, track.velocity * dt);
+  return Perturb(track.X_TP, track.velocity * std::min(dt, kLongestPrediction));
 }
 
 void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const TrackOptions& options, Track& track) {

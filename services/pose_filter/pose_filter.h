@@ -35,8 +35,9 @@ struct FilterInput {
 class PoseFilter {
  public:
   virtual ~PoseFilter() = default;
-  /// Never throws for bad data: what can't be used is ignored and shows in the status of the parts.
-  virtual PartPoses Step(const FilterInput& input) = 0;
+  /// Never throws for bad data: what can't be used is ignored and shows in the status of the parts. The result is valid
+  /// until the next call.
+  virtual const PartPoses& Step(const FilterInput& input) = 0;
   /// Forgets every pose; the next step starts from nothing.
   virtual void Reset() = 0;
   /// Poses known from elsewhere (a state file, or ground truth where the option's name says so), as hypotheses that

@@ -83,7 +83,7 @@ void PoseFilterService::Answer(const depth_image_t& depth, const detections_t* d
   if (detections) input.detections = &*detections;
   const bool fresh = belief_ && !recent_utimes_.empty() && belief_->utime >= recent_utimes_.front();
   if (fresh) input.belief = &*belief_;
-  const PartPoses poses = filter_->Step(input);
+  const PartPoses& poses = filter_->Step(input);
   recent_utimes_.push_back(frame.utime);
   if (recent_utimes_.size() > static_cast<size_t>(options_.belief_frames)) recent_utimes_.erase(recent_utimes_.begin());
   node_.Publish(ToMessage(poses));

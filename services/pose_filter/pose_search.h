@@ -31,8 +31,7 @@ struct PoseCandidate {
   /// Share of the outline, where it can be judged, at which the image has the step that the pose predicts; 1 without
   /// colour.
   double outline_support() const {
-    return evidence.contour_judged >= 8 ? static_cast<double>(evidence.contour_used) / evidence.contour_judged
-                                          : 1.0;
+    return evidence.contour_judged >= 8 ? static_cast<double>(evidence.contour_used) / evidence.contour_judged : 1.0;
   }
 };
 

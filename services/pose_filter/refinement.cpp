@@ -326,8 +326,8 @@ RefinementResult Refine(const PartModel& model, const Observation& observation, 
       rendered_at = result.X_CP;
     }
     const double blend = options.iterations > 1 ? static_cast<double>(k) / (options.iterations - 1) : 1;
-    result.last = Linearise(model, observation, owners, part, class_bit, result.X_CP, blend,
-                            result.last.outline_bias, options, scratch);
+    result.last = Linearise(model, observation, owners, part, class_bit, result.X_CP, blend, result.last.outline_bias,
+                            options, scratch);
     const Vector6 step = RefinementStep(result.last, reach, options);
     result.X_CP = Perturb(result.X_CP, step);
     if (StepLength(step, reach) < 2e-4 && k > 0) break;

@@ -131,27 +131,21 @@ Score ScoreBody(const RigidBody& body, const Observation& observation, const Own
   Score sum;
   for (const RigidMember& m : body) {
     RenderTile(*m.model, observation.camera, X_CG * m.X_GP, OwnerMap::kStep, 0, scratch.tile);
-    const Score s = ScoreTile(scratch.tile, observation, owners, m.part, m.class_bit);
-    sum.log_likelihood += s.log_likelihood;
-    sum.covered += s.covered;
-    sum.hidden += s.hidden;
-    sum.inlier += s.inlier;
-    sum.see_through += s.see_through;
-    sum.wrong_colour += s.wrong_colour;
-    sum.no_reading += s.no_reading;
+    sum += ScoreTile(scratch.tile, observation, owners, m.part, m.class_bit);
   }
   return sum;
 }
 
-Pose SearchBody(const RigidBody& body, const Observation& o, const OwnerMap& owners, const Pose& X_CG,
-                const Vector3& normal_C, double dt, const BodySearchOptions& options, RefinementScratch& scratch) {
+std::optional<Pose> SearchBody(const RigidBody& body, const Observation& o, const OwnerMap& owners, const Pose& X_CG,
+                               const Vector3& normal_C, double dt, const BodySearchOptions& options,
+                               RefinementScratch& scratch) {
   std::vector<Pose> starts{X_CG};
   const std::vector<ColourPoint> points = VisibleColour(body, X_CG, options.points);
   if (o.class_map && !points.empty()) {
     Vector3 middle = Vector3::Zero();
     for (const ColourPoint& p : points) middle += p.p_C / static_cast<double>(points.size());
-    const int reach = static_cast<int>((options.fastest * dt + options.slack) * o.camera.fx / middle.z() /
-                                       options.shift_step);
+    const int reach =
+        static_cast<int>((options.fastest * dt + options.slack) * o.camera.fx / middle.z() / options.shift_step);
     std::vector<Proposal> proposals;
     std::vector<Eigen::Vector3d> projected(points.size());
     for (const Matrix3& turn : Turns(middle.normalized(), normal_C, options)) {
@@ -164,8 +158,9 @@ Pose SearchBody(const RigidBody& body, const Observation& o, const OwnerMap& own
           if (i * i + j * j > reach * reach) continue;
           Proposal proposal{0, turn, i * options.shift_step, j * options.shift_step};
           for (size_t k = 0; k < points.size(); ++k)
-            proposal.matched += ColourMatch(points[k], static_cast<int>(projected[k].x() + proposal.du),
-                                            static_cast<int>(projected[k].y() + proposal.dv), projected[k].z(), o, owners);
+            proposal.matched +=
+                ColourMatch(points[k], static_cast<int>(projected[k].x() + proposal.du),
+                            static_cast<int>(projected[k].y() + proposal.dv), projected[k].z(), o, owners);
           if (proposal.matched > 0.1 * static_cast<double>(points.size())) proposals.push_back(proposal);
         }
       }
@@ -186,19 +181,18 @@ Pose SearchBody(const RigidBody& body, const Observation& o, const OwnerMap& own
     std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
     for (const Ranked& r : ranked) {
       if (static_cast<int>(starts.size()) > options.refined) break;
-      const bool known = std::any_of(starts.begin(), starts.end(), [&](const Pose& X) {
-        return StepLength(Difference(X, r.X_CG), 0.05) < 0.015;
-      });
+      const bool known = std::any_of(starts.begin(), starts.end(),
+                                     [&](const Pose& X) { return StepLength(Difference(X, r.X_CG), 0.05) < 0.015; });
       if (!known) starts.push_back(r.X_CG);
     }
   }
-  Pose best = X_CG;
-  double best_likelihood = -1e18;
+  std::optional<Pose> best;
+  double best_likelihood = 0;
   for (const Pose& start : starts) {
     const Pose X = RefineBody(body, o, owners, start, options.refinement, scratch);
-    const double likelihood = ScoreBody(body, o, owners, X, scratch).log_likelihood;
-    if (likelihood <= best_likelihood) continue;
-    best_likelihood = likelihood;
+    const Score score = ScoreBody(body, o, owners, X, scratch);
+    if (score.agreement() < options.least_agreement || score.log_likelihood <= best_likelihood) continue;
+    best_likelihood = score.log_likelihood;
     best = X;
   }
   return best;

@@ -4,6 +4,17 @@ namespace coach {
 
 double Score::agreement() const { return open() > 0 ? static_cast<double>(inlier + no_reading) / open() : 0; }
 
+Score& Score::operator+=(const Score& other) {
+  log_likelihood += other.log_likelihood;
+  covered += other.covered;
+  hidden += other.hidden;
+  inlier += other.inlier;
+  see_through += other.see_through;
+  wrong_colour += other.wrong_colour;
+  no_reading += other.no_reading;
+  return *this;
+}
+
 Score ScoreTile(const DepthTile& tile, const Observation& observation, const OwnerMap& owners, int part,
                 uint8_t class_bit) {
   Score score;

@@ -51,6 +51,7 @@ struct Score {
   int wrong_colour = 0;       ///< at the right depth or without a reading, and of another colour
   int no_reading = 0;         ///< no depth, in the part's colour
 
+  Score& operator+=(const Score& other);
   int open() const { return covered - hidden; }
   /// Share of the open samples that agree in depth (or have no reading) and in colour, 0..1.
   double agreement() const;

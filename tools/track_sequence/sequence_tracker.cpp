@@ -138,7 +138,7 @@ SequenceSummary TrackSequence(const SequenceOptions& options) {
     input.colour = frame.colour;
     input.detections = &detections;
     input.belief = &belief;
-    const PartPoses poses = filter->Step(input);
+    const PartPoses& poses = filter->Step(input);
     const double t2 = ProcessorTime();
     ReasonerOutput reasoned = reasoner.Step(poses);
     const double t3 = ProcessorTime();

@@ -38,11 +38,17 @@ Track Seen(const Pose& X_TP, double position = 0.001, double rotation = 0.01) {
 const Pose kAt = MakePose(ExpRotation({0, 0, 0.7}), {0.1, -0.05, 0.015});
 const Pose kFar = MakePose(Matrix3::Identity(), {-0.4, 0.3, 0.015});
 
+std::vector<PairEvidence> PairsOf(PairFinder& finder, int64_t utime, const std::vector<Track>& tracks) {
+  std::vector<PairEvidence> pairs;
+  finder.Find(utime, tracks, pairs);
+  return pairs;
+}
+
 TEST(PairEvidence, AConnectedPairIsFoundWithItsCandidate) {
   const Task task = Bricks();
   PairFinder finder(task);
   const Pose X_AB = task.connections[0].X_AB;
-  const auto pairs = finder.Find(1000, {Seen(kAt), Seen(kFar), Seen(kAt * X_AB)});
+  const auto pairs = PairsOf(finder, 1000, {Seen(kAt), Seen(kFar), Seen(kAt * X_AB)});
   ASSERT_EQ(pairs.size(), 1u);
   const PairEvidence& p = pairs[0];
   EXPECT_EQ(p.part_a, 0);
@@ -63,18 +69,19 @@ TEST(PairEvidence, SymmetricAndMistakenJoints) {
   // The long brick turned half round its y axis looks the same.
   Pose turned = kAt;
   turned.linear() = turned.linear() * ExpRotation({0, std::numbers::pi, 0});
-  auto pairs = finder.Find(1000, {Seen(turned), Seen(kFar), Seen(kAt * task.connections[0].X_AB)});
+  auto pairs = PairsOf(finder, 1000, {Seen(turned), Seen(kFar), Seen(kAt * task.connections[0].X_AB)});
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].candidate_kind, CandidateKind::kConnection);
   EXPECT_GT(pairs[0].log_evidence, 0);
-  pairs = finder.Find(2000, {Seen(kAt), Seen(kFar), Seen(kAt * task.mistakes[0].X_AB)});
+  pairs = PairsOf(finder, 2000, {Seen(kAt), Seen(kFar), Seen(kAt * task.mistakes[0].X_AB)});
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].candidate_kind, CandidateKind::kMistake);
   EXPECT_EQ(pairs[0].candidate, 0);
   EXPECT_GT(pairs[0].log_evidence, 0);
   // 2 cm beside the joint, eight standard deviations: two bodies.
-  pairs = finder.Find(3000, {Seen(kAt), Seen(kFar),
-                             Seen(kAt * task.connections[0].X_AB * MakePose(Matrix3::Identity(), {0, 0, 0.020}))});
+  pairs = PairsOf(
+      finder, 3000,
+      {Seen(kAt), Seen(kFar), Seen(kAt * task.connections[0].X_AB * MakePose(Matrix3::Identity(), {0, 0, 0.020}))});
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_LT(pairs[0].log_evidence, 0);
 }
@@ -85,11 +92,11 @@ TEST(PairEvidence, OnlyPartsThatAreSeenAndNear) {
   const Pose b = kAt * task.connections[0].X_AB;
   Track hidden = Seen(b);
   hidden.status = PartStatus::kOccluded;
-  EXPECT_TRUE(finder.Find(1000, {Seen(kAt), Seen(kFar), hidden}).empty());
+  EXPECT_TRUE(PairsOf(finder, 1000, {Seen(kAt), Seen(kFar), hidden}).empty());
   // The short brick leaves along its own axis: surfaces 2 cm, then 4 cm apart.
   for (const auto& [gap, pairs] : {std::pair{0.02, 1u}, {0.04, 0u}}) {
     const Pose away = b * MakePose(Matrix3::Identity(), {gap, 0, 0});
-    const auto found = finder.Find(2000, {Seen(kAt), Seen(kFar), Seen(away)});
+    const auto found = PairsOf(finder, 2000, {Seen(kAt), Seen(kFar), Seen(away)});
     ASSERT_EQ(found.size(), pairs) << gap;
     for (const PairEvidence& p : found) EXPECT_NEAR(p.surface_distance, gap, 0.003);
   }
@@ -108,7 +115,7 @@ TEST(PairEvidence, CovarianceIsThatOfDrawnPoses) {
     const Pose A = kAt, B = kAt * MakePose(ExpRotation({0, 0, std::numbers::pi / 2}), {0.045, 0, 0}) *
                             MakePose(Matrix3::Identity(), {lever, 0, 0});
     const Track track_a = Seen(A, 0.001, 0.02), track_b = Seen(B, 0.002, 0.01);
-    const auto pairs = finder.Find(1000, {track_a, Seen(kFar), track_b});
+    const auto pairs = PairsOf(finder, 1000, {track_a, Seen(kFar), track_b});
     ASSERT_EQ(pairs.size(), 1u);
     Matrix6 sampled = Matrix6::Zero();
     const int n = 20000;
@@ -137,20 +144,20 @@ TEST(PairEvidence, MotionOverHalfASecond) {
   for (int k = 0; k <= 30; ++k) {  // 10 cm/s and 0.5 rad/s as one body
     const double t = k / 30.0;
     const Pose A = MakePose(ExpRotation({0, 0, 0.5 * t}), {0.1 * t, 0, 0.015});
-    pairs = finder.Find(k * 1000000LL / 30, {Seen(A), Seen(kFar), Seen(A * task.connections[0].X_AB)});
+    pairs = PairsOf(finder, k * 1000000LL / 30, {Seen(A), Seen(kFar), Seen(A * task.connections[0].X_AB)});
     ASSERT_EQ(pairs.size(), 1u);
   }
   EXPECT_NEAR(pairs[0].motion[0], 0.05, 0.0034);  // within a frame
   EXPECT_NEAR(pairs[0].motion[1], 0.25, 0.017);
   EXPECT_LT(pairs[0].relative_motion[0] + pairs[0].relative_motion[1], 1e-9);
   // Time going backwards: nothing is remembered.
-  pairs = finder.Find(500000, {Seen(kAt), Seen(kFar), Seen(kAt * task.connections[0].X_AB)});
+  pairs = PairsOf(finder, 500000, {Seen(kAt), Seen(kFar), Seen(kAt * task.connections[0].X_AB)});
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].motion[0], 0);
   // Now B alone slides.
   for (int k = 1; k <= 15; ++k) {
     const Pose slid = kAt * task.connections[0].X_AB * MakePose(Matrix3::Identity(), {0, 0, 0.001 * k});
-    pairs = finder.Find(500000 + k * 30000, {Seen(kAt), Seen(kFar), Seen(slid)});
+    pairs = PairsOf(finder, 500000 + k * 30000, {Seen(kAt), Seen(kFar), Seen(slid)});
   }
   EXPECT_NEAR(pairs[0].relative_motion[0], 0.015, 1e-6);
   EXPECT_EQ(pairs[0].motion[0], 0);

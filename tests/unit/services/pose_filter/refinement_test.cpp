@@ -43,7 +43,7 @@ TEST(Refinement, ConvergesFromFiveMillimetresAndFourDegrees) {
     }
     EXPECT_LT(PositionError(r.X_CP, truth), 0.0007) << k;
     EXPECT_LT(AngleError(r.X_CP, truth), 2 * kDegree) << k;
-    EXPECT_GT(r.depth_used, 30);
+    EXPECT_GT(r.last.depth_used, 30);
     EXPECT_GT(r.last.contour_used, 0.8 * r.last.contour_judged);
   }
 }
@@ -60,7 +60,7 @@ TEST(Refinement, OneStepTakesBackASmallMotionAlongEveryAxis) {
   const RefinementResult fixed = RefineDrawn(model, drawn, truth, many);
   RefinementOptions one;
   one.iterations = 1;
-  const auto size = [&](const Vector6& e) { return std::sqrt(e.dot(fixed.information * e)); };
+  const auto size = [&](const Vector6& e) { return std::sqrt(e.dot(fixed.last.information * e)); };
   for (int axis = 0; axis < 6; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
       Vector6 xi = Vector6::Zero();
@@ -90,12 +90,12 @@ TEST(Refinement, InformationIsThatOfAPlateFacingTheCamera) {
   // Witnesses of variance sigma^2 + (1 mm)^2 on the plane z = 0.5: H_zz = N / variance, H about x = N mean(y^2) /
   // variance with mean(y^2) = height^2 / 12 for points spread evenly. The outermost 2 px (2 x 1.75 mm) are not used.
   const double sigma = DepthSigma(z), zz = options.depth_witnesses / (sigma * sigma + 1e-6);
-  EXPECT_NEAR(d.information(2, 2), zz, 0.03 * zz);
+  EXPECT_NEAR(d.last.information(2, 2), zz, 0.03 * zz);
   const double inner = height - 0.0035, about_x = zz * inner * inner / 12;
-  EXPECT_NEAR(d.information(3, 3), about_x, 0.15 * about_x);
+  EXPECT_NEAR(d.last.information(3, 3), about_x, 0.15 * about_x);
   // Nothing in depth holds a plate that slides in its own plane or turns in it.
   for (const int axis : {0, 1, 5}) {
-    EXPECT_LT(d.information(axis, axis), 1e-6 * zz) << axis;
+    EXPECT_LT(d.last.information(axis, axis), 1e-6 * zz) << axis;
   }
 
   DrawnObservation colour_only = drawn;
@@ -107,8 +107,8 @@ TEST(Refinement, InformationIsThatOfAPlateFacingTheCamera) {
   // for a step between two samples.
   const double share = height / (width + height), per_witness = 570 * 570 / (z * z) / 0.85;
   const double xx = options.contour_witnesses * share * per_witness;
-  EXPECT_NEAR(c.information(0, 0), xx, 0.25 * xx);
-  EXPECT_GT(c.information(0, 0), 100 * c.information(2, 2)) << "an outline says little of distance";
+  EXPECT_NEAR(c.last.information(0, 0), xx, 0.25 * xx);
+  EXPECT_GT(c.last.information(0, 0), 100 * c.last.information(2, 2)) << "an outline says little of distance";
 }
 
 TEST(Refinement, AFingerOverAThirdDoesNotMoveThePart) {
@@ -148,9 +148,9 @@ TEST(Refinement, NothingToSeeLeavesThePoseAlone) {
   drawn.picture.depth.setTo(0);
   drawn.class_map.clear();
   const RefinementResult r = RefineDrawn(model, drawn, truth);
-  EXPECT_EQ(r.depth_used, 0);
+  EXPECT_EQ(r.last.depth_used, 0);
   EXPECT_LT(PositionError(r.X_CP, truth), 1e-12);
-  EXPECT_LT(r.information.norm(), 1e-9);
+  EXPECT_LT(r.last.information.norm(), 1e-9);
   Pose behind = truth;
   behind.translation().z() = -0.5;
   EXPECT_TRUE(RefineDrawn(model, drawn, behind).X_CP.matrix() == behind.matrix());

@@ -17,24 +17,25 @@ using testing::ElementsAre;
 class RecordingFilter final : public PoseFilter {
  public:
   explicit RecordingFilter(std::vector<std::string>& calls) : calls_(calls) {}
-  PartPoses Step(const FilterInput& input) override {
+  const PartPoses& Step(const FilterInput& input) override {
     std::string call = "step " + std::to_string(input.utime);
     if (input.detections) call += " regions " + std::to_string(input.detections->utime);
     if (input.colour.empty()) call += " without colour";
     if (input.belief) call += " belief " + std::to_string(input.belief->utime);
     calls_.push_back(call);
-    PartPoses poses;
-    poses.utime = input.utime;
-    poses.received_utime = input.received_utime;
-    poses.parts.resize(1);
-    poses.parts[0].status = PartStatus::kTracked;
-    return poses;
+    poses_ = PartPoses();
+    poses_.utime = input.utime;
+    poses_.received_utime = input.received_utime;
+    poses_.parts.resize(1);
+    poses_.parts[0].status = PartStatus::kTracked;
+    return poses_;
   }
   void Reset() override { calls_.push_back("reset"); }
   void Suggest(const std::vector<Pose>& X_CP) override { calls_.push_back("suggest " + std::to_string(X_CP.size())); }
 
  private:
   std::vector<std::string>& calls_;
+  PartPoses poses_;
 };
 
 class PoseFilterServiceTest : public testing::Test {
