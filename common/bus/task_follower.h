@@ -10,9 +10,12 @@
 
 namespace coach {
 
+/// The task that a TASK message names: the file of that name from the station's folders of tasks.
+/// @throws ConfigurationError if it is missing, broken, or not the same file, byte for byte.
+Task AnnouncedTask(const Station& station, const task_t& message);
+
 /// Listens to TASK. When it names another task than the service's, loads the file of that name from the station's
-/// folder of tasks, and hands it over if it is the same file, byte for byte. A file that is missing, broken or another
-/// version is logged once and changes nothing.
+/// folders of tasks, and hands it over. A file that can't be used is logged once and changes nothing.
 class TaskFollower {
  public:
   /// @param sha256 of the task that the service begins with

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 namespace coach {
 namespace {
@@ -53,7 +53,8 @@ Station ParseStation(const std::string& text, const std::filesystem::path& file)
   Station station = DefaultStation();
   station.file = file;
   station.text = text;
-  const YamlNode root = YamlNode::Parse(text, file.string());
+  YamlNode root = YamlNode::Parse(text, file.string());
+  if (root.IsNull()) root = YamlNode::Parse("{}", file.string());
   station.root = root;
   if (!root.IsMap()) root.Fail("a map of settings");
   const auto path = [&](const YamlNode& map, const std::string& key) -> std::filesystem::path {
@@ -81,10 +82,8 @@ Station ParseStation(const std::string& text, const std::filesystem::path& file)
 
 Station ReadStation(const std::filesystem::path& file) {
   std::ifstream in(file);
-  std::stringstream text;
-  if (!in || std::filesystem::is_directory(file) || !(text << in.rdbuf()))
-    throw ConfigurationError(file.string() + ": can't be read");
-  return ParseStation(text.str(), file);
+  if (!in || std::filesystem::is_directory(file)) throw ConfigurationError(file.string() + ": can't be read");
+  return ParseStation({std::istreambuf_iterator<char>(in), {}}, file);
 }
 
 }  // namespace coach

@@ -29,7 +29,7 @@ struct Station {
   YamlNode Section(const std::string& name) const;
 };
 
-/// Reads a station file. Paths in it are relative to it.
+/// Reads a station file. Paths in it are relative to it. An empty file is a station of defaults.
 /// @throws ConfigurationError naming file, line, key and what was expected.
 Station ReadStation(const std::filesystem::path& file);
 Station ParseStation(const std::string& text, const std::filesystem::path& file);

@@ -1,4 +1,5 @@
-// The tasks that a station offers: the task files beside the station's own.
+// The tasks that a station offers: the task files beside the station's own, and those made at this table, which are in
+// the folder `tasks` of its state folder.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +10,13 @@
 
 namespace coach {
 
-/// Names (file names without .yaml) of the task files in the folder of the station's task, sorted. Empty without one.
+/// Folders that are looked into, in this order; of two tasks of one name the first counts.
+std::vector<std::filesystem::path> TaskFolders(const Station& station);
+
+/// Where tasks made at this table go; empty without a state folder.
+std::filesystem::path OwnTaskFolder(const Station& station);
+
+/// Names (file names without .yaml) of all of them, sorted.
 std::vector<std::string> TaskNames(const Station& station);
 
 /// The file of one of them.

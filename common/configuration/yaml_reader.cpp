@@ -186,6 +186,7 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::Entries() const {
 
 bool YamlNode::IsMap() const { return impl_->node.IsMap(); }
 bool YamlNode::IsScalar() const { return impl_->node.IsScalar(); }
+bool YamlNode::IsNull() const { return impl_->node.IsNull(); }
 
 void YamlNode::RejectUnknownKeys() const {
   if (!impl_->node.IsMap()) Fail("a map of keys and values");

@@ -59,6 +59,7 @@ class YamlNode {
   std::vector<std::pair<std::string, YamlNode>> Entries() const;  ///< of a map, in the file's order
   bool IsMap() const;
   bool IsScalar() const;
+  bool IsNull() const;  ///< an empty document or value
 
   /// @throws if this map has a key that was never asked for by Get, At, Find or Has.
   void RejectUnknownKeys() const;

@@ -9,10 +9,10 @@
 namespace coach {
 namespace {
 
-std::vector<HsvRange> ClassRanges(const Task& task) {
+std::vector<HsvRange> ClassRanges(const Task& task, const std::map<std::string, HsvRange>& colours) {
   std::vector<HsvRange> ranges(static_cast<size_t>(task.NumColourClasses()));
   for (size_t t = 0; t < task.types.size(); ++t) {
-    ranges[static_cast<size_t>(task.ColourClass(static_cast<int>(t)))] = task.types[t].hsv;
+    ranges[static_cast<size_t>(task.ColourClass(static_cast<int>(t)))] = RangeOf(task.types[t], colours);
   }
   return ranges;
 }
@@ -32,8 +32,15 @@ void Check(const HsvDetectorOptions& options) {
 
 }  // namespace
 
+HsvRange RangeOf(const PartType& type, const std::map<std::string, HsvRange>& colours) {
+  for (const std::string& name : {type.name, type.colour}) {
+    if (const auto found = colours.find(name); found != colours.end()) return found->second;
+  }
+  return type.hsv;
+}
+
 HsvDetector::HsvDetector(const Task& task, const HsvDetectorOptions& options)
-    : options_(options), num_classes_(task.NumColourClasses()), table_(ClassRanges(task)) {
+    : options_(options), num_classes_(task.NumColourClasses()), table_(ClassRanges(task, options.colours)) {
   Check(options);
   if (task.types.size() > 32) throw std::invalid_argument("at most 32 part types are possible");
   types_of_class_.resize(static_cast<size_t>(num_classes_));

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/assembly/task.h"
@@ -25,7 +27,12 @@ struct HsvDetectorOptions {
   /// BackgroundChromaticity of the pictures by which the HSV ranges were chosen. Given, each frame is brought back to
   /// it before its colours are looked up; empty: colours are taken as they are.
   std::optional<Chromaticity> background;
+  /// Ranges in this room's light, in place of the task's: by the types' word for their colour, or by a type's name.
+  std::map<std::string, HsvRange> colours;
 };
+
+/// The range by which parts of a type are found.
+HsvRange RangeOf(const PartType& type, const std::map<std::string, HsvRange>& colours);
 
 /// Pixels are classified by the HSV ranges of the task's colour classes (ColourTable). The class map shows the raw
 /// classes; opening and closing act on the regions only.

@@ -7,24 +7,10 @@
 #include "common/bus/messages.h"
 #include "common/bus/service_main.h"
 #include "common/bus/task_follower.h"
-#include "services/detector/hsv_detector.h"
+#include "services/detector/detector_options.h"
 
 namespace coach {
 namespace {
-
-HsvDetectorOptions ReadOptions(const YamlNode& section) {
-  HsvDetectorOptions options;
-  options.min_area = static_cast<int>(section.GetInRange("min_area", options.min_area, 1, 100'000));
-  options.opening = static_cast<int>(section.GetInRange("opening", options.opening, 0, 10));
-  options.closing = static_cast<int>(section.GetInRange("closing", options.closing, 0, 10));
-  if (const auto background = section.Find("background")) {
-    options.background =
-        Chromaticity{background->GetInRange("blue_green", 0, -3, 3), background->GetInRange("red_green", 0, -3, 3)};
-    background->RejectUnknownKeys();
-  }
-  section.RejectUnknownKeys();
-  return options;
-}
 
 class DetectorService {
  public:
@@ -85,7 +71,7 @@ int main(int argc, char** argv) {
       argc, argv, "detector", "Finds regions of the task's colours in every frame.", nullptr,
       [](coach::ServiceContext& context) {
         const coach::Station& station = context.station;
-        const coach::HsvDetectorOptions options = coach::ReadOptions(station.Section("detector"));
+        const coach::HsvDetectorOptions options = coach::ReadDetectorOptions(station.Section("detector"));
         if (station.task.empty()) throw coach::ConfigurationError("no task: give task in the station file, or --task");
         context.node.expects_frames = true;
         coach::DetectorService(context.node, station, coach::LoadTask(station.task), options).Run();

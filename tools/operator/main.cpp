@@ -3,16 +3,20 @@
 
 #include <CLI/CLI.hpp>
 #include <coach/annotation_t.hpp>
+#include <coach/config_t.hpp>
+#include <cstdlib>
 #include <mutex>
 
 #include "common/bus/image_messages.h"
 #include "common/bus/messages.h"
 #include "common/bus/process_facts.h"
 #include "common/bus/service_main.h"
+#include "common/bus/task_follower.h"
 #include "common/configuration/task_choice.h"
 #include "common/imaging/image_codec.h"
 #include "tools/operator/page_json.h"
 #include "tools/operator/page_options.h"
+#include "tools/operator/table_setup.h"
 
 namespace coach {
 namespace {
@@ -65,26 +69,72 @@ annotation_t MessageOf(const Annotation& a) {
   return message;
 }
 
+/// The newest pictures as they came; decoded only when somebody asks.
+class NewestFrame {
+ public:
+  void OnColour(const color_image_t& message) {
+    const std::lock_guard lock(mutex_);
+    colour_ = message;
+    seen_ = SteadyTime();
+  }
+  void OnDepth(const depth_image_t& message) {
+    const std::lock_guard lock(mutex_);
+    depth_ = message;
+  }
+  /// Empty if no picture came within the last three seconds. Colour and depth may be a frame apart.
+  std::optional<Frame> Read() const {
+    color_image_t colour;
+    depth_image_t depth;
+    {
+      const std::lock_guard lock(mutex_);
+      if (seen_ == 0 || SteadyTime() - seen_ > 3'000'000) return std::nullopt;
+      colour = colour_;
+      depth = depth_;
+    }
+    Frame frame = FromMessage(colour);
+    if (depth.data_size == 0) return frame;
+    const Frame other = FromMessage(depth);
+    frame.depth = other.depth;
+    frame.metres_per_unit = other.metres_per_unit;
+    return frame;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  color_image_t colour_{};
+  depth_image_t depth_{};
+  int64_t seen_ = 0;
+};
+
+/// For a station file that names none: what systemd gives the unit, else a folder beside the file.
+std::filesystem::path DefaultStateFolder(const Station& station) {
+  if (const char* given = std::getenv("STATE_DIRECTORY")) return given;
+  return station.file.empty() ? std::filesystem::path()
+                              : std::filesystem::absolute(station.file).parent_path() / "state";
+}
+
 /// The page's place on the bus. Everything but the annotations' queue belongs to the node's thread.
 class OperatorService {
  public:
   OperatorService(const ServiceContext& context, const PageOptions& options)
       : station_(context.station),
         lesson_(options.lesson),
+        setup_(
+            {station_.file, DefaultStateFolder(station_), ShippedTasks(), [this] { return newest_.Read(); }, &lesson_}),
         outbox_({}, context.station.name),
         annotations_(options.annotations),
         node_(WithPeriod(context.node)) {
     if (annotations_.unreadable_lines() > 0) {
       spdlog::warn("{}: {} lines can't be read", options.annotations.string(), annotations_.unreadable_lines());
     }
-    if (!station_.task.empty()) UseTask(station_.task, "");
+    if (!station_.task.empty()) lesson_.OnTask(LoadTaskView(station_.task, ++task_revision_));
     Subscribe();
     server_.emplace(options.server,
                     PageServer::Sources{&lesson_, &outbox_, &annotations_, station_.name,
                                         [this, languages = options.languages] {
-                                          return Choices{TaskNames(station_), languages};
+                                          return Choices{TaskNames(setup_.station()), languages};
                                         },
-                                        [this](const Annotation& a) { Queue(a); }, [this] { node_.Wake(); }});
+                                        [this](const Annotation& a) { Queue(a); }, [this] { node_.Wake(); }, Routes()});
     spdlog::info("the page is at {}", server_->Url());
     node_.SetState(service_health_t::OK, server_->Url());
   }
@@ -103,7 +153,10 @@ class OperatorService {
     node_.SubscribeNewest<color_image_t>([this](const color_image_t& m) {
       node_.Received();
       lesson_.OnPicture(PictureOf(m));
+      newest_.OnColour(m);
     });
+    node_.SubscribeNewest<depth_image_t>([this](const depth_image_t& m) { newest_.OnDepth(m); });
+    node_.Subscribe<config_t>([this](const config_t& m) { setup_.OnConfiguration(m.service, m.yaml); });
     node_.SubscribeNewest<part_poses_t>([this](const part_poses_t& m) {
       lesson_.OnPoses(FromMessage(m));
       node_.Answered(m.received_utime);
@@ -112,7 +165,7 @@ class OperatorService {
     node_.Subscribe<guidance_event_t>([this](const auto& m) { lesson_.OnEvent(FromMessage(m)); });
     node_.Subscribe<task_t>([this](const auto& m) {
       const auto known = lesson_.task();
-      if (!known || known->sha256 != m.sha256) UseTask(m.file, m.sha256);
+      if (!known || known->sha256 != m.sha256) FollowTask(m);
     });
     node_.Subscribe<robot_command_t>([this](const auto& m) { lesson_.OnCommand(FromMessage(m), WallTime()); });
     const auto on_status = [this](const robot_status_t& m) { lesson_.OnStatus(FromMessage(m), WallTime()); };
@@ -129,10 +182,24 @@ class OperatorService {
     }
   }
 
-  void UseTask(const std::filesystem::path& file, const std::string& sha256) {
-    const auto view = LoadTaskView(file, sha256, ++task_revision_);
-    if (!view->problem.empty()) spdlog::warn("{}", view->problem);
-    lesson_.OnTask(view);
+  void FollowTask(const task_t& message) {
+    try {
+      lesson_.OnTask(MakeTaskView(std::make_shared<Task>(AnnouncedTask(setup_.station(), message)), ++task_revision_));
+    } catch (const std::exception& e) {
+      spdlog::warn("{}", e.what());
+      lesson_.OnTask(UnusableTask(message.name, message.sha256, e.what(), ++task_revision_));
+    }
+  }
+
+  std::vector<PageServer::Route> Routes() {
+    using Request = PageServer::Request;
+    using Answer = PageServer::Answer;
+    return {
+        {"/api/setup", false, [this](const Request&) { return Answer{setup_.Status()}; }},
+        {"/api/setup/colour", true, [this](const Request& r) { return Answer{setup_.SuggestColour(r.body)}; }},
+        {"/api/setup/seat", true, [this](const Request& r) { return Answer{setup_.SuggestSeat(r.body)}; }},
+        {"/api/setup/save", true, [this](const Request& r) { return Answer{setup_.Save(r.body)}; }},
+    };
   }
 
   void Queue(const Annotation& annotation) {
@@ -157,6 +224,8 @@ class OperatorService {
 
   const Station station_;
   Lesson lesson_;
+  NewestFrame newest_;
+  TableSetup setup_;
   CommandOutbox outbox_;
   AnnotationBook annotations_;
   Node node_;

@@ -262,23 +262,23 @@ std::shared_ptr<const TaskView> MakeTaskView(std::shared_ptr<const Task> task, i
   return view;
 }
 
-std::shared_ptr<const TaskView> LoadTaskView(const std::filesystem::path& file, const std::string& sha256,
-                                             int64_t revision) {
-  std::string problem;
-  try {
-    auto task = std::make_shared<const Task>(LoadTask(file));
-    if (sha256.empty() || task->sha256 == sha256) return MakeTaskView(std::move(task), revision);
-    problem = file.string() + " was changed after the services had read it; restart them";
-  } catch (const std::exception& e) {
-    problem = e.what();
-  }
+std::shared_ptr<const TaskView> UnusableTask(const std::string& name, const std::string& sha256,
+                                             const std::string& problem, int64_t revision) {
   auto view = std::make_shared<TaskView>();
   view->revision = revision;
-  view->name = view->choice = file.stem();
+  view->name = view->choice = name;
   view->sha256 = sha256;
   view->problem = problem;
-  view->json = Dump({{"revision", revision}, {"name", view->name}});
+  view->json = Dump({{"revision", revision}, {"name", name}});
   return view;
+}
+
+std::shared_ptr<const TaskView> LoadTaskView(const std::filesystem::path& file, int64_t revision) {
+  try {
+    return MakeTaskView(std::make_shared<const Task>(LoadTask(file)), revision);
+  } catch (const std::exception& e) {
+    return UnusableTask(file.stem(), "", e.what(), revision);
+  }
 }
 
 std::string StateJson(const Lesson::Snapshot& snapshot, const std::vector<CommandOutbox::Entry>& commands,

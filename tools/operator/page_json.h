@@ -14,9 +14,10 @@
 namespace coach {
 
 /// Reads a task file for the pages; a file that can't be used becomes the view's `problem`.
-/// @param sha256 of the file that the services use; another content is a problem too. Empty: any.
-std::shared_ptr<const TaskView> LoadTaskView(const std::filesystem::path& file, const std::string& sha256,
-                                             int64_t revision);
+std::shared_ptr<const TaskView> LoadTaskView(const std::filesystem::path& file, int64_t revision);
+/// A task that can't be used, for the pages to say why.
+std::shared_ptr<const TaskView> UnusableTask(const std::string& name, const std::string& sha256,
+                                             const std::string& problem, int64_t revision);
 std::shared_ptr<const TaskView> MakeTaskView(std::shared_ptr<const Task> task, int64_t revision);
 
 /// What a page may choose from.

@@ -4,6 +4,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -14,6 +15,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "common/configuration/yaml_reader.h"
+
 namespace coach {
 namespace {
 
@@ -22,7 +25,7 @@ using Json = nlohmann::json;
 constexpr int kThreads = 48;              // streams plus what else a dozen pages ask for at once
 constexpr int kHeartbeat = 1000;          // ms
 constexpr int kStatePause = 200;          // ms between two states: a page needs no more
-constexpr size_t kMaxPosted = 64 * 1024;  // bytes
+constexpr size_t kMaxPosted = 64 * 1024;  // bytes, where a route does not say otherwise
 constexpr size_t kMaxText = 400;          // bytes of a command's argument
 constexpr size_t kMaxAnnotations = 300;   // that a page is sent
 
@@ -100,7 +103,9 @@ struct PageServer::Impl {
   void Configure() {
     server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
     server.set_keep_alive_max_count(10'000);
-    server.set_payload_max_length(kMaxPosted);
+    size_t largest = kMaxPosted;
+    for (const Route& route : sources.routes) largest = std::max(largest, route.largest_body);
+    server.set_payload_max_length(largest);
     // Not SO_REUSEPORT, httplib's default: a second page on the same port must fail, not share it.
     server.set_socket_options([](socket_t sock) {
       const int yes = 1;
@@ -120,6 +125,10 @@ struct PageServer::Impl {
         Refuse(response, 403, refused);
         return httplib::Server::HandlerResponse::Handled;
       }
+      if (facts.changes_something && !SmallEnough(request)) {
+        Refuse(response, 413, "this is too large");
+        return httplib::Server::HandlerResponse::Handled;
+      }
       if (request.has_param("token") && !options.access.token.empty()) {
         response.set_header("Set-Cookie", "coach_token=" + facts.token + "; HttpOnly; SameSite=Strict; Path=/");
       }
@@ -130,13 +139,39 @@ struct PageServer::Impl {
         std::rethrow_exception(error);
       } catch (const Json::exception&) {
         Refuse(response, 400, "the request is not understood");
+      } catch (const ConfigurationError& e) {
+        Refuse(response, 400, e.what());
+      } catch (const std::invalid_argument& e) {
+        Refuse(response, 400, e.what());
       } catch (const std::exception& e) {
         Refuse(response, 500, e.what());
       }
     });
   }
 
+  /// Bodies are read only after this: what is too large, or does not say how large it is, never comes in.
+  bool SmallEnough(const httplib::Request& request) const {
+    size_t largest = kMaxPosted;
+    for (const Route& route : sources.routes) {
+      if (route.post && route.path == request.path) largest = route.largest_body;
+    }
+    return request.has_header("Content-Length") && request.get_header_value<uint64_t>("Content-Length") <= largest;
+  }
+
+  void AddFurther(const Route& route) {
+    const auto answer = [handler = route.handler](const httplib::Request& request, httplib::Response& response) {
+      const Answer made = handler({request.body, request.has_param("name") ? request.get_param_value("name") : ""});
+      response.set_content(made.body, made.type);
+    };
+    if (route.post) {
+      server.Post(route.path, answer);
+    } else {
+      server.Get(route.path, answer);
+    }
+  }
+
   void AddRoutes() {
+    for (const Route& route : sources.routes) AddFurther(route);
     server.Get("/api/events", [this](const auto& request, auto& response) { Events(request, response); });
     server.Get("/api/live", [this](const auto& request, auto& response) { Live(request, response); });
     server.Get("/api/task", [this](const auto&, auto& response) {

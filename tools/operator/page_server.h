@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tools/operator/access.h"
 #include "tools/operator/annotations.h"
@@ -23,9 +24,26 @@ namespace coach {
 /// GET  /metrics      PrometheusText
 /// POST /api/command     {"kind": "start", "argument": ""} -> {"id": 1}
 /// POST /api/annotation  {"kind", "subject", "value", "annotator", "utime", "replaces_id"} -> {"id": 1}
-/// POST needs the header X-Coach. Refusals are {"error": "..."} with status 400, 403 or 503.
+/// POST needs the header X-Coach. Refusals are {"error": "..."} with status 400, 403, 413, 500 or 503.
 class PageServer {
  public:
+  /// What further pages (set-up, new tasks) answer. An exception is a refusal with its text: ConfigurationError and
+  /// std::invalid_argument are the asker's fault (400), any other ours (500).
+  struct Request {
+    std::string body;
+    std::string name;  ///< of the address' query
+  };
+  struct Answer {
+    std::string body;
+    std::string type = "application/json";
+  };
+  using Handler = std::function<Answer(const Request&)>;
+  struct Route {
+    std::string path;  ///< /api/...
+    bool post = false;
+    Handler handler;
+    size_t largest_body = 64 * 1024;  ///< bytes
+  };
   struct Options {
     std::string address = "127.0.0.1";
     int port = 8080;  ///< 0: any that is free
@@ -42,6 +60,7 @@ class PageServer {
     // Called from the server's threads:
     std::function<void(const Annotation&)> publish;
     std::function<void()> command_waits;  ///< the outbox has something new
+    std::vector<Route> routes{};          ///< of further pages
   };
 
   /// @throws std::runtime_error if the address can't be listened on or would be open to the network without a token.

@@ -1,13 +1,14 @@
 // The teacher's page: puts the pieces together.
 import {byId, element, rebuild, readable} from './dom.js';
 import {fetchTask, listenToState, listenToView, post} from './connection.js';
-import {pictureRate, showView} from './camera.js';
+import {picturePlace, pictureRate, showPictureIn, showView, tintPicture} from './camera.js';
 import {coloursOfConnection, connectionName, showPlan} from './plan.js';
 import {currentAct, showRobot} from './robot.js';
 import {setUpTable, showTable} from './table3d.js';
 import {addEvents, showTimeline} from './timeline.js';
 import {showHealth} from './health.js';
 import {setUpNotes, showNotes, showQuestionnaire} from './notes.js';
+import {setUpWizard, showWizard} from './setup.js';
 import {pageLanguage, t, usePageLanguage, wordsOf} from './words.js';
 
 const INTRODUCTION = 0, IDLE = 5, PAUSED = 8, COMPLETE = 9;
@@ -106,6 +107,7 @@ function showAll() {
   showNotes(state, task, toast);
   showQuestionnaire(toast);
   const rate = pictureRate();
+  showWizard(page);
   byId('camera-figures').textContent = rate > 0 ? t('fps', rate.toFixed(0)) : '';
   showCameraNote(rate > 0);
 }
@@ -143,6 +145,11 @@ function showPage() {
   const name = known.includes(wanted) ? wanted : 'lesson';
   for (const link of document.querySelectorAll('.tabs a')) link.dataset.page === name ? link.setAttribute('aria-current', 'page') : link.removeAttribute('aria-current');
   for (const section of document.querySelectorAll('.page')) section.hidden = section.id !== `page-${name}`;
+  if (name === 'lesson') {
+    showPictureIn(byId('lesson-stage'));
+    tintPicture(null);
+    picturePlace(null);
+  }
   showAll();
 }
 
@@ -151,6 +158,7 @@ byId('page-language').value = preferred;
 usePageLanguage(preferred);
 setUpControls();
 setUpTable();
+setUpWizard(send, toast);
 setUpNotes(() => page.state?.data_utime ?? 0, toast);
 addEventListener('hashchange', () => { showPage(); scrollTo(0, 0); });
 showPage();

@@ -1,4 +1,5 @@
-// The live picture with the parts' outlines and names.
+// The live picture with the parts' outlines and names. It can move to another page, show a range of colours, and be
+// clicked.
 import {byId, element, readable, rebuild, swatch} from './dom.js';
 import {colourOf} from './colours.js';
 import {t} from './words.js';
@@ -6,6 +7,8 @@ import {t} from './words.js';
 const TRACKED = 0, OCCLUDED = 1, LOST = 3;
 const canvas = byId('camera-canvas'), context = canvas.getContext('2d', {alpha: false});
 let decoding = false, last = null;
+let tint = null, onPlace = null;
+const cross = {x: 320, y: 240, shown: false};  // for those who don't click: arrow keys and Enter
 const times = [];
 
 /** Shows a view. A picture that comes while another is being decoded is left out. */
@@ -45,6 +48,8 @@ function draw(picture, view, task) {
     canvas.height = picture.height;
   }
   context.drawImage(picture, 0, 0);
+  if (tint) greyOutside(tint);
+  if (onPlace && cross.shown) drawCross();
   if (!task?.parts || task.parts.length !== view.parts.length) return;
   const unit = Math.max(1, picture.width / (canvas.clientWidth || picture.width));  // lines and names keep their size on the screen
   const named = [];
@@ -55,6 +60,65 @@ function draw(picture, view, task) {
     named.push({part, name: readable(task.parts[index].name), colour});
   });
   placeNames(named, unit);
+}
+
+/** Moves the picture into a container of another page. */
+export function showPictureIn(container) {
+  const stage = canvas.parentElement;
+  if (stage.parentElement !== container) container.append(stage);
+}
+
+/** Greys out what is not in an HSV range {low, high} (OpenCV's 8 bits); null shows everything. */
+export function tintPicture(range) { tint = range; }
+
+/** Calls handler(x, y) with the pixel that is clicked; null: the picture is not for clicking. */
+export function picturePlace(handler) {
+  onPlace = handler;
+  canvas.tabIndex = handler ? 0 : -1;
+  canvas.classList.toggle('pick', Boolean(handler));
+  canvas.setAttribute('aria-label', t(handler ? 'setup.click_here' : 'camera_description'));
+}
+
+canvas.addEventListener('click', (event) => {
+  const box = canvas.getBoundingClientRect(), scale = Math.min(box.width / canvas.width, box.height / canvas.height);
+  const x = (event.clientX - box.left - (box.width - canvas.width * scale) / 2) / scale, y = (event.clientY - box.top - (box.height - canvas.height * scale) / 2) / scale;
+  if (x >= 0 && y >= 0 && x < canvas.width && y < canvas.height) onPlace?.(Math.floor(x), Math.floor(y));
+});
+canvas.addEventListener('keydown', (event) => {
+  const step = event.shiftKey ? 2 : 12, move = {ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step]}[event.key];
+  if (!onPlace || (!move && event.key !== 'Enter')) return;
+  event.preventDefault();
+  cross.shown = true;
+  if (!move) return onPlace(cross.x, cross.y);
+  cross.x = Math.min(Math.max(cross.x + move[0], 0), canvas.width - 1);
+  cross.y = Math.min(Math.max(cross.y + move[1], 0), canvas.height - 1);
+});
+
+function drawCross() {
+  for (const [colour, width] of [['#fff', 5], ['#1d2a2a', 2]]) {
+    context.strokeStyle = colour;
+    context.lineWidth = width;
+    context.beginPath();
+    context.moveTo(cross.x - 14, cross.y); context.lineTo(cross.x + 14, cross.y);
+    context.moveTo(cross.x, cross.y - 14); context.lineTo(cross.x, cross.y + 14);
+    context.stroke();
+  }
+}
+
+function greyOutside({low, high}) {
+  const image = context.getImageData(0, 0, canvas.width, canvas.height), {data} = image;
+  const wraps = low[0] > high[0];
+  for (let k = 0; k < data.length; k += 4) {
+    const r = data[k], g = data[k + 1], b = data[k + 2];
+    const value = Math.max(r, g, b), span = value - Math.min(r, g, b);
+    const saturation = value ? 255 * span / value : 0;
+    let hue = 0;
+    if (span) hue = 30 * (value === r ? ((g - b) / span + 6) % 6 : value === g ? (b - r) / span + 2 : (r - g) / span + 4);
+    const inHue = wraps ? hue >= low[0] || hue <= high[0] : hue >= low[0] && hue <= high[0];
+    if (inHue && saturation >= low[1] && saturation <= high[1] && value >= low[2] && value <= high[2]) continue;
+    data[k] = data[k + 1] = data[k + 2] = 60 + 0.25 * (0.3 * r + 0.6 * g + 0.1 * b);
+  }
+  context.putImageData(image, 0, 0);
 }
 
 function drawOutline(part, colour, unit) {

@@ -51,6 +51,16 @@ function firstRecord(buffer) {
   return {json: buffer.subarray(4, 4 + jsonSize), jpeg: buffer.subarray(8 + jsonSize, size), size};
 }
 
+/** What an address answers; null if it does not. */
+export async function fetchJson(path) {
+  try {
+    const response = await fetch(path, {cache: 'no-store'});
+    return response.ok ? await response.json() : null;
+  } catch {
+    return null;
+  }
+}
+
 export async function fetchTask() {
   return (await fetch('api/task', {cache: 'no-store'})).json();
 }

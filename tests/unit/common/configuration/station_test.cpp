@@ -57,5 +57,14 @@ TEST(Station, MistakesNameFileLineAndKey) {
   EXPECT_THROW(ReadStation("/nowhere/station.yaml"), ConfigurationError);
 }
 
+TEST(Station, AnEmptyFileIsAStationOfDefaults) {
+  for (const char* text : {"", "\n", "# nothing yet\n"}) {
+    const Station station = ParseStation(text, "station.yaml");
+    EXPECT_EQ(station.name, DefaultStation().name);
+    EXPECT_TRUE(station.task.empty());
+    EXPECT_FALSE(station.Section("robot").Has("volume"));
+  }
+}
+
 }  // namespace
 }  // namespace coach

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
 
 namespace coach {
 namespace {
@@ -23,6 +26,18 @@ TEST(TaskChoice, WhatIsNotThereIsOneClearError) {
   }
   EXPECT_TRUE(TaskNames(DefaultStation()).empty());
   EXPECT_THROW(TaskFileNamed(DefaultStation(), "square"), ConfigurationError);
+}
+
+TEST(TaskChoice, TasksMadeAtTheTableAreOfferedToo) {
+  namespace fs = std::filesystem;
+  Station station = WithTasks();
+  station.state_folder = fs::temp_directory_path() / ("coach_choice_" + std::to_string(getpid()));
+  fs::create_directories(OwnTaskFolder(station));
+  for (const char* name : {"castle", "square"}) std::ofstream(OwnTaskFolder(station) / (std::string(name) + ".yaml"));
+  EXPECT_THAT(TaskNames(station), testing::IsSupersetOf({"castle", "square", "two_bricks"}));
+  EXPECT_EQ(TaskFileNamed(station, "castle"), OwnTaskFolder(station) / "castle.yaml");
+  EXPECT_EQ(TaskFileNamed(station, "square"), station.task) << "the first folder's";
+  fs::remove_all(station.state_folder);
 }
 
 }  // namespace

@@ -56,6 +56,24 @@ TEST(HsvDetector, FindsRegionsByClassLargestFirst) {
   EXPECT_EQ(found.class_map[0], 0);
 }
 
+TEST(HsvDetector, TheRoomsRangesTakeThePlaceOfTheTasks) {
+  Task task = TwoColours();
+  task.types[0].colour = "blue";
+  task.types[1].colour = task.types[2].colour = "green";
+  cv::Mat image(480, 640, CV_8UC3, kTable);
+  cv::rectangle(image, {100, 100, 60, 20}, kRed, cv::FILLED);
+  HsvDetectorOptions options;
+  EXPECT_TRUE(HsvDetector(task, options).Detect(image, {}, 0).regions.empty());
+  options.colours["green"] = {{170, 100, 50}, {10, 255, 255}};
+  const Detections found = HsvDetector(task, options).Detect(image, {}, 0);
+  ASSERT_EQ(found.regions.size(), 1u);
+  EXPECT_EQ(found.num_classes, 2);
+  EXPECT_EQ(found.regions[0].candidate_types, 0b110u);
+  options.colours["long"] = options.colours["green"];
+  options.colours.erase("green");
+  EXPECT_EQ(HsvDetector(task, options).Detect(image, {}, 0).regions.at(0).candidate_types, 0b001u);
+}
+
 TEST(HsvDetector, OverlappingRangesMakeCandidatesOfBoth) {
   Task task;
   task.types = {Type("box", {{165, 80, 60}, {25, 255, 255}}), Type("mug", {{165, 100, 30}, {5, 255, 255}}),
