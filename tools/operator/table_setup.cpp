@@ -81,6 +81,21 @@ PixelMask PartPixels(const Lesson& lesson, const std::string& colour, const cv::
   return all;
 }
 
+/// Whether a service must start again to use what the set-up changes.
+bool Concerned(const std::string& service) {
+  return service == "detector" || service == "pose-filter" || service == "assembly-reasoner" ||
+         service == "robot-bridge";
+}
+
+/// Whether a pixel shows something on the table or no further than an arm above it.
+bool OnTable(const Frame& frame, const Plane& table, const cv::Point& at) {
+  if (!cv::Rect({0, 0}, frame.depth.size()).contains(at)) return false;
+  const CameraModel& c = frame.camera;
+  const double z = frame.depth.at<uint16_t>(at) * frame.metres_per_unit;
+  const double height = table.Height({(at.x - c.cx) / c.fx * z, (at.y - c.cy) / c.fy * z, z});
+  return z == 0 || (height > -0.02 && height < 0.25);
+}
+
 Vector3 DegreesOf(const Pose& X) {
   const Matrix3 R = X.rotation();
   const Vector3 angles(std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
@@ -206,7 +221,7 @@ std::string TableSetup::Status() const {
   json["old"] = Json::array();
   const std::lock_guard lock(mutex_);
   for (const auto& [service, yaml] : running_) {
-    if (yaml != now.text && service != "operator") json["old"].push_back(service);
+    if (yaml != now.text && Concerned(service)) json["old"].push_back(service);
   }
   return Dump(json);
 }
@@ -218,16 +233,17 @@ std::string TableSetup::SuggestColour(const std::string& request) const {
   const Station now = station();
   std::string problem;
   const auto task = TaskOf(now, problem);
-  if (!task) throw std::invalid_argument("choose a task first");
+  if (!task) throw std::invalid_argument("no_task");
   const std::optional<Frame> frame = sources_.frame();
-  if (!frame || frame->colour.empty()) throw std::invalid_argument("there is no picture");
+  if (!frame || frame->colour.empty()) throw std::invalid_argument("no_picture");
   const CameraCheck camera = CheckCamera(*frame);
+  if (camera.table && !OnTable(*frame, *camera.table, at)) throw std::invalid_argument("not_on_table");
   const PixelMask table = camera.table ? TablePixels(*frame, *camera.table) : PixelMask();
   PixelMask pixels = PartPixels(*sources_.lesson, colour, frame->colour.size(), &at);
   const bool part = !pixels.empty();
   if (!part) pixels = ClickedRegion(*frame, camera.table, at.x, at.y);
   const auto range = SuggestRange(frame->colour, pixels, table);
-  if (!range) throw std::invalid_argument("too few pixels of one colour there: click the middle of a part");
+  if (!range) throw std::invalid_argument("few_pixels");
   const auto own = ReadDetectorOptions(now.Section("detector")).colours;
   return Dump({{"range", RangeJson(*range)},
                {"pixels", cv::countNonZero(pixels)},
@@ -271,7 +287,9 @@ std::string TableSetup::Save(const std::string& request) {
     if (now.state_folder.empty() && !sources_.state_folder.empty() && !settings.empty())
       settings.push_back({{"state_folder"}, Dump(sources_.state_folder.string())});
     const std::string text = WithSettings(now.text, settings);
-    Check(ParseStation(text, sources_.file));
+    const Station changed = ParseStation(text, sources_.file);
+    Check(changed);
+    if (!changed.state_folder.empty()) fs::create_directories(changed.state_folder);
     ReplaceFile(sources_.file, text);
   }
   return Status();

@@ -39,11 +39,12 @@ class TableSetup {
   std::string Status() const;
 
   /// {x, y, colour}: suggests the colour's range from the part or region that was clicked (px).
-  /// -> {range, pixels, part, table_share, overlaps} @throws std::invalid_argument if there is nothing to calibrate by
+  /// -> {range, pixels, part, table_share, overlaps} @throws std::invalid_argument no_task, no_picture, not_on_table or
+  /// few_pixels
   std::string SuggestColour(const std::string& request) const;
 
   /// {near, far, ahead, height}: part indices and metres; the robot's seat by SeatFromMarks.
-  /// -> {position, roll_pitch_yaw} @throws std::invalid_argument saying why there is none
+  /// -> {position, roll_pitch_yaw} @throws std::invalid_argument unseen or close
   std::string SuggestSeat(const std::string& request) const;
 
   /// {task?, colours?: {name: range or null}, robot?: {back_end?, volume?, position?, roll_pitch_yaw?, url?}}: checks

@@ -56,14 +56,14 @@ class Teacher:
         self.clicks += 1
 
 
-# Somewhere inside the largest patch of one colour of the picture: [x, y]. A person sees it.
+# Somewhere inside the largest patch of one colour on the table: [x, y]. A person sees it.
 PATCH = """
 const c = document.querySelector('#camera-canvas'), bitmap = document.createElement('canvas').getContext('2d');
 bitmap.canvas.width = c.width; bitmap.canvas.height = c.height; bitmap.drawImage(c, 0, 0);
 const {data} = bitmap.getImageData(0, 0, c.width, c.height), like = {blue: (r, g, b) => b > 1.6 * r && b > 1.25 * g, green: (r, g, b) => g > 1.25 * r && g > 1.25 * b}[arguments[0]];
 const at = (x, y) => { const k = 4 * (y * c.width + x); return like(data[k], data[k + 1], data[k + 2]) && Math.max(data[k], data[k + 1], data[k + 2]) > 40; };
 let best = null, most = 0;
-for (let y = 20; y < c.height - 20; y += 4) for (let x = 20; x < c.width - 20; x += 4) {
+for (let y = Math.round(0.42 * c.height); y < c.height - 20; y += 4) for (let x = 20; x < c.width - 20; x += 4) {
   let count = 0;
   for (let v = -8; v <= 8; v += 2) for (let u = -8; u <= 8; u += 2) count += at(x + u, y + v);
   if (count > most) [most, best] = [count, [x, y]];
@@ -98,6 +98,7 @@ class SetUpTest(unittest.TestCase):
         teacher.screenshot("camera")
         teacher.click("#setup-next")
 
+        places = {colour: page.wait_for(PATCH, 10, colour) for colour in ("blue", "green")}  # before the rest is grey
         teacher.click(f"input[name='setup-task'][value='{pathlib.Path(TASK).stem}']")
         teacher.done("task")
         self.assertEqual(page.run(AUDIT), [])
@@ -105,12 +106,7 @@ class SetUpTest(unittest.TestCase):
         teacher.click("#setup-next")
 
         teacher.step_is("colours")
-        for colour in ("blue", "green"):
-            place = page.wait_for(PATCH, 10, colour) if colour == "blue" else self.place_of_green
-            if colour == "blue":
-                page.run("document.querySelector(\"[data-focus='task']\").click()")
-                self.place_of_green = page.wait_for(PATCH, 10, "green")
-                page.run("document.querySelector(\"[data-focus='colours']\").click()")
+        for colour, place in places.items():
             teacher.click(f"input[name='setup-colour'][value='{colour}']")
             teacher.click_picture(*place)
             page.wait_for("return document.querySelector('#setup-content .verdict.good')", 10)

@@ -5,6 +5,7 @@ import {colourOf} from './colours.js';
 import {picturePlace, tintPicture} from './camera.js';
 import {t} from './words.js';
 
+const ERRORS = ['no_task', 'no_picture', 'not_on_table', 'few_pixels'];
 const CHANNELS = [['hue', 179], ['saturation', 255], ['value', 255]];
 const pending = new Map();  // colour: {range or null, found}
 let chosen = null, tuning = false;
@@ -15,7 +16,7 @@ const rangeOf = (colour) => pending.get(colour.name)?.range ?? colour.range;
 async function clicked(x, y, {toast, redraw}) {
   const name = chosen;
   const found = await post('api/setup/colour', {x, y, colour: name});
-  if (!found.range) return toast(found.error ?? t('no_network'), true);
+  if (!found.range) return toast(ERRORS.includes(found.error) ? t(`setup.colour_error.${found.error}`) : found.error ?? t('no_network'), true);
   pending.set(name, {range: found.range, found});
   redraw();
 }

@@ -78,6 +78,7 @@ TEST_F(TableSetupTest, AnEmptyStationFileBecomesACompleteOne) {
   EXPECT_EQ(station.task, (fs::path(COACH_SOURCE_DIR) / "deploy/tasks/two_bricks.yaml").lexically_normal());
   EXPECT_EQ(station.state_folder, folder_ / "state");
   EXPECT_DOUBLE_EQ(station.Section("robot").Get<double>("volume"), 0.4);
+  EXPECT_TRUE(fs::is_directory(folder_ / "state"));
   EXPECT_TRUE(fs::exists(folder_ / "station.yaml.1"));
   EXPECT_THAT(Read(folder_ / "station.yaml.1"), HasSubstr("colours")) << "the version before the last";
 
@@ -90,6 +91,7 @@ TEST_F(TableSetupTest, SaysWhichServicesRunWithOlderSettings) {
   EXPECT_THAT(Status()["old"].get<std::vector<std::string>>(), IsEmpty());
   setup_.Save(R"({"task": "square"})");
   setup_.OnConfiguration("operator", "");
+  setup_.OnConfiguration("capture", "");
   EXPECT_THAT(Status()["old"].get<std::vector<std::string>>(), ElementsAre("detector"));
   setup_.OnConfiguration("detector", Read(file_));
   EXPECT_THAT(Status()["old"].get<std::vector<std::string>>(), IsEmpty());
@@ -119,6 +121,8 @@ TEST_F(TableSetupTest, AnUnusableStationFileOrTaskIsSaidAndNothingBreaks) {
 TEST_F(TableSetupTest, WithoutACameraOrATaskColoursCannotBeChosen) {
   EXPECT_THROW(setup_.SuggestColour(R"({"x": 1, "y": 1, "colour": "blue"})"), std::invalid_argument);
   setup_.Save(R"({"task": "square"})");
+  cv::rectangle(frame_->depth, {0, 0, 640, 50}, cv::Scalar(2000), cv::FILLED);
+  EXPECT_THROW(setup_.SuggestColour(R"({"x": 9, "y": 9, "colour": "blue"})"), std::invalid_argument) << "a far wall";
   frame_.reset();
   EXPECT_THROW(setup_.SuggestColour(R"({"x": 1, "y": 1, "colour": "blue"})"), std::invalid_argument);
   EXPECT_THAT(Status()["camera"]["problems"].get<std::vector<std::string>>(), ElementsAre("no_picture"));
