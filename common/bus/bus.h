@@ -7,11 +7,10 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "common/bus/channels.h"
-#include "common/bus/message_check.h"
+#include "common/bus/decode_message.h"
 
 struct _lcm_t;
 
@@ -87,11 +86,7 @@ class Bus {
   template <class M>
   static ByteHandler Decoder(std::function<void(const M&)> handler) {
     return [handler = std::move(handler)](std::span<const uint8_t> bytes) {
-      CheckBeforeDecoding(std::type_identity<M>(), bytes);
-      M message;
-      const int size = static_cast<int>(bytes.size());
-      if (message.decode(bytes.data(), 0, size) != size) throw std::invalid_argument("not a message of this type");
-      handler(message);
+      handler(DecodeMessage<M>(bytes));
     };
   }
   void Add(const std::string& channel, bool newest_only, bool skip, ByteHandler handler);

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "common/bus/channels.h"
-#include "common/bus/message_check.h"
+#include "common/bus/decode_message.h"
 
 namespace coach {
 namespace {
@@ -20,10 +20,7 @@ using Decoder = std::function<std::optional<Decoded>(std::span<const uint8_t>)>;
 
 template <class M>
 std::optional<Decoded> Decode(std::span<const uint8_t> bytes) try {
-  CheckBeforeDecoding(std::type_identity<M>(), bytes);
-  M message;
-  const int size = static_cast<int>(bytes.size());
-  if (message.decode(bytes.data(), 0, size) != size) return std::nullopt;
+  const M message = DecodeMessage<M>(bytes);
   Decoded decoded;
   if constexpr (requires { message.sequence; }) decoded.sequence = message.sequence;
   if constexpr (requires { message.received_utime; }) decoded.received_utime = message.received_utime;

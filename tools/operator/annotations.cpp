@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -35,6 +36,17 @@ std::string ProblemOf(const Annotation& annotation) {
   return "";
 }
 
+std::vector<Annotation> InForce(const std::vector<Annotation>& annotations) {
+  std::set<int64_t> replaced;
+  for (const auto& a : annotations) {
+    if (a.replaces_id != 0) replaced.insert(a.replaces_id);
+  }
+  std::vector<Annotation> current;
+  std::copy_if(annotations.begin(), annotations.end(), std::back_inserter(current),
+               [&](const auto& a) { return !replaced.contains(a.id) && a.kind != "removed"; });
+  return current;
+}
+
 AnnotationBook::AnnotationBook(std::filesystem::path file) : file_(std::move(file)) {
   std::ifstream in(file_);
   for (std::string line; std::getline(in, line);) {
@@ -63,13 +75,8 @@ Annotation AnnotationBook::Add(Annotation annotation, int64_t now) {
 
 std::vector<Annotation> AnnotationBook::Current(size_t limit) const {
   const std::lock_guard lock(mutex_);
-  std::set<int64_t> replaced;
-  for (const auto& a : all_) replaced.insert(a.replaces_id);
-  std::vector<Annotation> current;
-  for (auto a = all_.rbegin(); a != all_.rend() && current.size() < limit; ++a) {
-    if (!replaced.contains(a->id) && a->kind != "removed") current.push_back(*a);
-  }
-  std::reverse(current.begin(), current.end());
+  std::vector<Annotation> current = InForce(all_);
+  if (current.size() > limit) current.erase(current.begin(), current.end() - static_cast<std::ptrdiff_t>(limit));
   return current;
 }
 

@@ -23,6 +23,9 @@ struct Annotation {
 /// Empty if it can be kept, else what is wrong: a kind that is not on the list, or a text of over 2000 bytes.
 std::string ProblemOf(const Annotation& annotation);
 
+/// Those that are not replaced by another one and are not 'removed', in the same order.
+std::vector<Annotation> InForce(const std::vector<Annotation>& annotations);
+
 /// Thread safe.
 class AnnotationBook {
  public:

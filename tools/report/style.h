@@ -1,0 +1,8 @@
+// The page's style sheet.
+#pragma once
+
+namespace coach {
+
+extern const char* const kStyleSheet;
+
+}  // namespace coach
