@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
@@ -29,6 +30,12 @@ std::string UrlOf(const YamlNode& bus, const std::string& key, const std::string
   const std::string url = bus.Get<std::string>(key, otherwise);
   if (url.find("://") == std::string::npos) bus.At(key).Fail("an LCM URL such as " + otherwise);
   return url;
+}
+
+/// LCM's packets stay on the host unless the URL asks for more.
+bool LeavesTheHost(const std::string& url) {
+  const size_t ttl = url.find("ttl=");
+  return ttl != std::string::npos && std::atoi(url.c_str() + ttl + 4) > 0;
 }
 
 }  // namespace
@@ -70,6 +77,8 @@ Station ParseStation(const std::string& text, const std::filesystem::path& file)
     station.table_url = UrlOf(*bus, "table", station.table_url);
     station.robot_url = UrlOf(*bus, "robot", station.robot_url);
     station.key_file = path(*bus, "key_file");
+    if (LeavesTheHost(station.robot_url) && station.key_file.empty())
+      bus->At("robot").Fail(station.robot_url, "ttl=0, or a `key_file` beside it: what leaves this computer is signed");
     bus->RejectUnknownKeys();
   }
   for (const char* section : kSections) {

@@ -16,9 +16,11 @@
 namespace coach {
 
 struct SpeechOrder {
-  int64_t id = 0;        ///< given back in the events
-  std::string text;      ///< UTF-8, clean (see CleanText), never empty
-  std::string language;  ///< en, el, ...
+  int64_t id = 0;            ///< given back in the events
+  std::string text;          ///< UTF-8, clean (see CleanText), never empty
+  std::string language;      ///< en, el, ...
+  std::string phrase_key{};  ///< which phrase it is; empty: none
+  int wording = 0;           ///< which of its wordings, from 0
 };
 
 struct BackEndEvent {

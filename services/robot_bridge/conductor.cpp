@@ -111,7 +111,7 @@ void Conductor::StartSpeech(int64_t now) {
   speech_ = Speech::kRunning;
   speech_limit_ = now + Microseconds(4 + 3 * SpeakingTime(text_));
   if (!command.language.empty()) language_ = command.language;
-  back_end_.Say({command.id, text_, language_});
+  back_end_.Say({command.id, text_, language_, command.phrase_key, command.wording});
 }
 
 bool Conductor::GestureDone(int64_t now) const {

@@ -20,8 +20,13 @@ std::unique_ptr<BackEnd> MakeBackEnd(const RobotOptions& options, const Station&
   if (options.back_end == "log") {
     return std::make_unique<LogBackEnd>([](const std::string& line) { spdlog::info("robot: {}", line); });
   }
-  if (options.back_end == "nao") return std::make_unique<NaoRobot>(options.nao);
-  auto robot = std::make_unique<VirtualRobot>(options.virtual_robot, options.conductor.X_TR);
+  Recordings recordings;
+  if (!options.recordings.empty()) {
+    recordings = Recordings(std::filesystem::absolute(station.file).parent_path() / options.recordings);
+    spdlog::info("{} recorded sentences", recordings.size());
+  }
+  if (options.back_end == "nao") return std::make_unique<NaoRobot>(options.nao, std::move(recordings));
+  auto robot = std::make_unique<VirtualRobot>(options.virtual_robot, options.conductor.X_TR, std::move(recordings));
   if (!station.task.empty()) robot->ShowTask(LoadTask(station.task));
   spdlog::info("virtual robot: {}", robot->url());
   return robot;

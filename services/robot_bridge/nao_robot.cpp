@@ -61,7 +61,8 @@ List ChunksOf(const RenderedSpeech& speech) {
 
 }  // namespace
 
-NaoRobot::NaoRobot(const NaoOptions& options) : options_(options), session_(SessionOptionsOf(options)) {}
+NaoRobot::NaoRobot(const NaoOptions& options, Recordings recordings)
+    : options_(options), renderer_(std::move(recordings)), session_(SessionOptionsOf(options)) {}
 NaoRobot::~NaoRobot() = default;
 
 void NaoRobot::Tell(const std::string& service, const std::string& method, List arguments, double timeout_s) {
@@ -240,10 +241,12 @@ void NaoRobot::Say(const SpeechOrder& speech) {
   chunks_.reset();
   speech_end_ = 0;
   const std::string language = RobotsLanguage(speech.language);
-  if (!language.empty() && languages_.contains(language)) {
+  if (renderer_.HasRecording(speech)) {
+    renderer_.Order(speech);
+  } else if (!language.empty() && languages_.contains(language)) {
     SayItself(speech, language);
-  } else if (renderer_.Speaks(speech.language)) {
-    renderer_.Order(speech.id, speech.text, speech.language);
+  } else if (renderer_.CanSay(speech)) {
+    renderer_.Order(speech);
   } else {
     EndSpeech(speech.id, "no voice for the language '" + speech.language + "'");
   }
@@ -266,8 +269,8 @@ void NaoRobot::SayItself(const SpeechOrder& speech, const std::string& robots_la
                   if (result.ok) {
                     set_language_ = robots_language;
                     say();
-                  } else if (renderer_.Speaks(speech.language)) {
-                    renderer_.Order(speech.id, speech.text, speech.language);
+                  } else if (renderer_.CanSay(speech)) {
+                    renderer_.Order(speech);
                   } else {
                     EndSpeech(speech.id, "language '" + speech.language + "': " + result.error);
                   }

@@ -31,7 +31,7 @@ struct NaoOptions {
 class NaoRobot : public BackEnd {
  public:
   /// @throws std::invalid_argument for a URL that is none
-  explicit NaoRobot(const NaoOptions& options);
+  explicit NaoRobot(const NaoOptions& options, Recordings recordings = {});
   ~NaoRobot() override;
 
   std::string name() const override { return "nao"; }

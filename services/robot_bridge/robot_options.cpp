@@ -66,6 +66,7 @@ Pose DefaultRobotPose() {
 RobotOptions ReadRobotOptions(const YamlNode& robot) {
   RobotOptions options;
   options.back_end = robot.GetChoice("back_end", options.back_end, {"virtual", "nao", "log"});
+  options.recordings = robot.Get<std::string>("recordings", options.recordings);
   options.volume = robot.GetInRange("volume", options.volume, 0, 1);
   options.conductor.X_TR = ReadPose(robot);
   options.conductor.heartbeat_timeout_s =

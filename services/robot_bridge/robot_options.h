@@ -13,6 +13,7 @@ namespace coach {
 struct RobotOptions {
   std::string back_end = "virtual";  ///< virtual, nao or log
   double volume = 0.6;               ///< 0..1 at the start
+  std::string recordings;            ///< folder, as given; empty: none. See recordings.h
   ConductorOptions conductor;
   VirtualRobotOptions virtual_robot;
   NaoOptions nao;

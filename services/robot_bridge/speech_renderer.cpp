@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -71,71 +70,7 @@ std::string RunEspeak(const std::vector<std::string>& arguments, const std::stri
   return output;
 }
 
-template <class T>
-void Append(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-template <class T>
-T ReadAt(const std::string& bytes, size_t at) {
-  T value{};
-  if (at + sizeof value > bytes.size()) throw std::runtime_error("WAV: truncated");
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
-
 }  // namespace
-
-std::string WavFile(const RenderedSpeech& speech) {
-  const auto data_size = static_cast<uint32_t>(speech.samples.size() * 2);
-  std::string bytes = "RIFF";
-  Append<uint32_t>(bytes, 36 + data_size);
-  bytes += "WAVEfmt ";
-  Append<uint32_t>(bytes, 16);
-  Append<uint16_t>(bytes, 1);  // PCM
-  Append<uint16_t>(bytes, 1);  // mono
-  Append<uint32_t>(bytes, static_cast<uint32_t>(speech.sample_rate));
-  Append<uint32_t>(bytes, static_cast<uint32_t>(speech.sample_rate) * 2);
-  Append<uint16_t>(bytes, 2);
-  Append<uint16_t>(bytes, 16);
-  bytes += "data";
-  Append<uint32_t>(bytes, data_size);
-  bytes.append(reinterpret_cast<const char*>(speech.samples.data()), data_size);
-  return bytes;
-}
-
-RenderedSpeech ReadWav(const std::string& bytes) {
-  if (bytes.size() < 12 || bytes.compare(0, 4, "RIFF") != 0 || bytes.compare(8, 4, "WAVE") != 0) {
-    throw std::runtime_error("WAV: no RIFF/WAVE header");
-  }
-  RenderedSpeech speech;
-  size_t channels = 0;
-  for (size_t at = 12; at + 8 <= bytes.size();) {
-    const std::string kind = bytes.substr(at, 4);
-    const size_t size = ReadAt<uint32_t>(bytes, at + 4);
-    at += 8;
-    if (kind == "fmt ") {
-      channels = ReadAt<uint16_t>(bytes, at + 2);
-      speech.sample_rate = static_cast<int>(ReadAt<uint32_t>(bytes, at + 4));
-      const bool pcm16 = ReadAt<uint16_t>(bytes, at) == 1 && ReadAt<uint16_t>(bytes, at + 14) == 16;
-      if (!pcm16 || channels < 1 || channels > 2 || speech.sample_rate < 8000 || speech.sample_rate > 96000) {
-        throw std::runtime_error("WAV: only 16-bit PCM, mono or stereo, 8 to 96 kHz");
-      }
-    } else if (kind == "data") {
-      if (channels == 0) throw std::runtime_error("WAV: data before format");
-      const size_t frames = std::min(size, bytes.size() - at) / (2 * channels);
-      speech.samples.resize(frames);
-      for (size_t i = 0; i < frames; ++i) {
-        int sum = 0;
-        for (size_t c = 0; c < channels; ++c) sum += ReadAt<int16_t>(bytes, at + 2 * (i * channels + c));
-        speech.samples[i] = static_cast<int16_t>(sum / static_cast<int>(channels));
-      }
-      return speech;
-    }
-    at += size + size % 2;
-  }
-  throw std::runtime_error("WAV: no data");
-}
 
 std::set<std::string> InstalledVoices() {
   std::set<std::string> voices;
@@ -150,12 +85,16 @@ std::set<std::string> InstalledVoices() {
   return voices;
 }
 
-SpeechRenderer::SpeechRenderer()
-    : voices_(InstalledVoices()), thread_([this](const std::stop_token& stop) { Run(stop); }) {}
+SpeechRenderer::SpeechRenderer(Recordings recordings)
+    : recordings_(std::move(recordings)),
+      voices_(InstalledVoices()),
+      thread_([this](const std::stop_token& stop) { Run(stop); }) {}
 
 SpeechRenderer::~SpeechRenderer() = default;
 
-bool SpeechRenderer::Speaks(const std::string& language) const {
+bool SpeechRenderer::CanSay(const SpeechOrder& speech) const {
+  if (HasRecording(speech)) return true;
+  const std::string& language = speech.language;
   const std::string base = language.substr(0, language.find('-'));
   for (const std::string& voice : voices_) {
     if (voice == language || voice == base || voice.starts_with(base + "-")) return true;
@@ -163,9 +102,9 @@ bool SpeechRenderer::Speaks(const std::string& language) const {
   return false;
 }
 
-void SpeechRenderer::Order(int64_t id, const std::string& text, const std::string& language) {
+void SpeechRenderer::Order(const SpeechOrder& speech) {
   const std::lock_guard lock(mutex_);
-  jobs_.push_back({id, text, language});
+  jobs_.push_back(speech);
   if (jobs_.size() > kMostJobs) {
     finished_.push_back({jobs_.front().id, 22050, {}, "too many sentences wait to be rendered"});
     jobs_.pop_front();
@@ -178,23 +117,37 @@ std::vector<RenderedSpeech> SpeechRenderer::Take() {
   return std::exchange(finished_, {});
 }
 
+RenderedSpeech SpeechRenderer::Render(const SpeechOrder& speech) const {
+  RenderedSpeech rendered;
+  if (const auto recording = recordings_.Find(speech)) {
+    try {
+      rendered = ReadWavFile(*recording);
+    } catch (const std::exception& error) {
+      rendered.error = error.what();
+    }
+  } else {
+    try {
+      const std::string voice =
+          voices_.contains(speech.language) ? speech.language : speech.language.substr(0, speech.language.find('-'));
+      rendered =
+          ReadWav(RunEspeak({"--stdin", "--stdout", "-b", "1", "-s", "145", "-p", "62", "-v", voice}, speech.text));
+    } catch (const std::exception& error) {
+      rendered.error = std::string("espeak-ng could not say it: ") + error.what();
+    }
+  }
+  rendered.id = speech.id;
+  return rendered;
+}
+
 void SpeechRenderer::Run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (wake_.wait(lock, stop, [this] { return !jobs_.empty(); })) {
-    const Job job = jobs_.front();
+    const SpeechOrder speech = jobs_.front();
     jobs_.pop_front();
     lock.unlock();
-    RenderedSpeech speech;
-    try {
-      const std::string voice =
-          voices_.contains(job.language) ? job.language : job.language.substr(0, job.language.find('-'));
-      speech = ReadWav(RunEspeak({"--stdin", "--stdout", "-b", "1", "-s", "145", "-p", "62", "-v", voice}, job.text));
-    } catch (const std::exception& error) {
-      speech.error = std::string("espeak-ng could not say it: ") + error.what();
-    }
-    speech.id = job.id;
+    RenderedSpeech rendered = Render(speech);
     lock.lock();
-    finished_.push_back(std::move(speech));
+    finished_.push_back(std::move(rendered));
   }
 }
 

@@ -1,4 +1,5 @@
-// Speech by espeak-ng (a program of its own, given the text on its standard input), rendered off the caller's thread.
+// Speech by espeak-ng (a program of its own, given the text on its standard input), or as somebody recorded it; made
+// ready off the caller's thread.
 #pragma once
 
 #include <condition_variable>
@@ -11,52 +12,39 @@
 #include <thread>
 #include <vector>
 
+#include "services/robot_bridge/recordings.h"
+#include "services/robot_bridge/wav.h"
+
 namespace coach {
-
-/// 16-bit mono speech.
-struct RenderedSpeech {
-  int64_t id = 0;
-  int sample_rate = 22050;       ///< Hz
-  std::vector<int16_t> samples;  ///< empty if it failed
-  std::string error;             ///< why it failed
-  double seconds() const { return static_cast<double>(samples.size()) / sample_rate; }
-};
-
-/// A complete WAV file.
-std::string WavFile(const RenderedSpeech& speech);
-/// Reads 16-bit PCM WAV (stereo is mixed down); a length that goes beyond the data, as streaming writers leave it, is
-/// cut.
-/// @throws std::runtime_error for anything else.
-RenderedSpeech ReadWav(const std::string& bytes);
 
 /// Languages that espeak-ng has voices for ("en", "el", "pt-br", ...); empty if it is not installed.
 std::set<std::string> InstalledVoices();
 
 class SpeechRenderer {
  public:
-  SpeechRenderer();
+  explicit SpeechRenderer(Recordings recordings = {});
   ~SpeechRenderer();
   SpeechRenderer(const SpeechRenderer&) = delete;
   SpeechRenderer& operator=(const SpeechRenderer&) = delete;
 
-  /// A voice speaks the language, or its base language ("en" for "en-au").
-  bool Speaks(const std::string& language) const;
+  /// Somebody has recorded this sentence.
+  bool HasRecording(const SpeechOrder& speech) const { return recordings_.Find(speech).has_value(); }
+  /// It is recorded, or a voice speaks its language, or the base language ("en" for "en-au").
+  bool CanSay(const SpeechOrder& speech) const;
   /// Renders in the background. At most 16 wait; the oldest is dropped with an error.
-  void Order(int64_t id, const std::string& text, const std::string& language);
+  void Order(const SpeechOrder& speech);
   /// What has been finished since the last call.
   std::vector<RenderedSpeech> Take();
 
  private:
-  struct Job {
-    int64_t id;
-    std::string text, language;
-  };
+  RenderedSpeech Render(const SpeechOrder& speech) const;
   void Run(const std::stop_token& stop);
 
+  const Recordings recordings_;
   std::set<std::string> voices_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::deque<Job> jobs_;
+  std::deque<SpeechOrder> jobs_;
   std::vector<RenderedSpeech> finished_;
   std::jthread thread_;
 };

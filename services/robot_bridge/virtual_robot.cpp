@@ -59,7 +59,8 @@ json JointList() {
 
 }  // namespace
 
-VirtualRobot::VirtualRobot(const VirtualRobotOptions& options, const Pose& X_TR) : X_TR_(X_TR), server_(options) {
+VirtualRobot::VirtualRobot(const VirtualRobotOptions& options, const Pose& X_TR, Recordings recordings)
+    : X_TR_(X_TR), server_(options), renderer_(std::move(recordings)) {
   SendHello();
 }
 
@@ -89,8 +90,8 @@ void VirtualRobot::ShowTask(const Task& task) {
 void VirtualRobot::Say(const SpeechOrder& speech) {
   speech_ = Speech{};
   speech_->order = speech;
-  if (renderer_.Speaks(speech.language)) {
-    renderer_.Order(speech.id, speech.text, speech.language);
+  if (renderer_.CanSay(speech)) {
+    renderer_.Order(speech);
   } else {
     speech_->refused = true;
   }

@@ -16,7 +16,7 @@ namespace coach {
 class VirtualRobot : public BackEnd {
  public:
   /// @param X_TR the robot's place, for the picture of the table
-  VirtualRobot(const VirtualRobotOptions& options, const Pose& X_TR);
+  VirtualRobot(const VirtualRobotOptions& options, const Pose& X_TR, Recordings recordings = {});
 
   /// What lies on the table: names, colours and shapes of the parts.
   void ShowTask(const Task& task);

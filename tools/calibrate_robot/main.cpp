@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 
 #include "common/assembly/task_file.h"
@@ -13,6 +14,7 @@
 #include "services/robot_bridge/nao_robot.h"
 #include "services/robot_bridge/robot_options.h"
 #include "tools/calibrate_robot/calibration_run.h"
+#include "tools/calibrate_robot/station_file.h"
 
 namespace {
 
@@ -32,26 +34,35 @@ int PartNamed(const Task& task, const std::string& name) {
   throw ConfigurationError("--part: found '" + name + "', expected one of " + names);
 }
 
-void Report(const CalibrationResult& result, size_t samples) {
+constexpr double kWorst = 0.02;  // m, beyond which a result is not worth keeping
+
+void Report(const CalibrationResult& result, size_t samples, const std::filesystem::path& station, bool write) {
   if (!result.success) throw std::runtime_error("no result: " + result.problem);
   std::printf(
       "# from %zu poses: residual %.1f mm, to be expected elsewhere %.1f mm; the part sits %.0f mm from the hand's "
-      "point\n# put these lines under `robot:` in the station file:\n%s",
+      "point\nrobot:\n%s",
       samples, 1e3 * result.residual, 1e3 * result.left_out_residual, 1e3 * result.p_H.norm(),
       StationLines(result.X_TR).c_str());
+  if (result.left_out_residual > kWorst)
+    throw std::runtime_error("not written: an error of over 20 mm is to be expected; did the part move in the hand?");
+  if (!write) return;
+  const auto kept = WriteRobotPose(station, result.X_TR);
+  std::printf("# written to %s; the old one is %s\n", station.c_str(), kept.c_str());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   std::string part, arm_name = "right";
-  bool yes = false;
+  bool yes = false, keep = false;
   return ServiceMain(
       argc, argv, "calibrate-robot",
-      "Finds where the robot sits: it holds a part in its hand and takes eight poses while the tracker watches.",
+      "Finds where the robot sits and writes it into the station file: the robot holds a part in its hand and takes "
+      "eight poses while the tracker watches. The robot bridge must not run at the same time.",
       [&](CLI::App& app) {
         app.add_option("--part", part, "the part in the hand, e.g. long_1")->required();
         app.add_option("--arm", arm_name, "left or right")->check(CLI::IsMember({"left", "right"}));
+        app.add_flag("--dry-run", keep, "print the result, leave the station file alone");
         app.add_flag("--yes", yes, "do not ask whether the part is in the hand");
       },
       [&](ServiceContext& context) {
@@ -81,6 +92,8 @@ int main(int argc, char** argv) {
           }
           if (run.finished()) node.Stop();
         });
-        if (run.finished()) Report(CalibrateRobot(run.samples()), run.samples().size());
+        if (run.finished())
+          Report(CalibrateRobot(run.samples()), run.samples().size(), context.station.file,
+                 !keep && !context.station.file.empty());
       });
 }

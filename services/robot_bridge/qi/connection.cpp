@@ -9,7 +9,10 @@ namespace {
 
 constexpr size_t kMostPending = 256;
 constexpr uint32_t kAuthenticateAction = 8;
-constexpr int64_t kLoginDone = 3;
+constexpr uint32_t kMainObject = 1, kMetaObjectAction = 2;
+constexpr int64_t kLoginContinues = 2, kLoginDone = 3;
+constexpr int kMostLoginRounds = 4;
+constexpr int kUnansweredUntilDoubt = 2;  // calls in a row
 
 const Signature& Dynamic() {
   static const Signature kDynamic = ParseSignature("m");
@@ -18,6 +21,15 @@ const Signature& Dynamic() {
 const Signature& Capabilities() {
   static const Signature kCapabilities = ParseSignature("{sm}");
   return kCapabilities;
+}
+
+/// A dynamic value that holds a text; some servers send the text alone.
+std::string ErrorText(const std::string& payload) {
+  try {
+    return Decode(Dynamic(), payload).Text();
+  } catch (const FormatError&) {
+    return Decode(ParseSignature("s"), payload).Text();
+  }
 }
 
 }  // namespace
@@ -33,7 +45,7 @@ Result ResultOf(const Message& message, const Signature& returned) {
         break;
       }
       case MessageType::kError:
-        result.error = Decode(Dynamic(), message.payload).Text();
+        result.error = ErrorText(message.payload);
         if (result.error.empty()) result.error = "the robot reports an error without a word";
         break;
       default:
@@ -47,7 +59,7 @@ Result ResultOf(const Message& message, const Signature& returned) {
 }
 
 Session::Connection::Connection(const Endpoint& endpoint, const SessionOptions& options, int64_t now)
-    : options_(options), transport_(endpoint), now_(now) {}
+    : options_(options), token_(options.token), transport_(endpoint), now_(now) {}
 
 void Session::Connection::Authenticate() {
   Map capabilities;
@@ -58,7 +70,7 @@ void Session::Connection::Authenticate() {
   add("RemoteCancelableCalls", false);
   add("ObjectPtrUID", false);
   if (!options_.user.empty()) add("auth_user", options_.user);
-  if (!options_.token.empty()) add("auth_token", options_.token);
+  if (!token_.empty()) add("auth_token", token_);
   Message message;
   message.id = login_id_ = next_id_++;
   message.action = kAuthenticateAction;
@@ -69,29 +81,40 @@ void Session::Connection::Authenticate() {
 
 void Session::Connection::HandleLogin(const Message& message) {
   const bool login_asked = !options_.user.empty() || !options_.token.empty();
-  if (message.type != MessageType::kReply && message.type != MessageType::kCapability) {
-    const std::string error = ResultOf(message, Capabilities()).error;
-    // A server that knows no authentication answers with an error; one that refuses ours does too.
-    if (login_asked) {
-      transport_.Close("login refused: " + error);
-      return;
-    }
-  } else if (message.type == MessageType::kReply) {
-    const Result result = ResultOf(message, Capabilities());
-    const Value* state = result.value.Find("__qi_auth_state");
-    if (!result.ok) {
-      transport_.Close("login: " + result.error);
-      return;
-    }
-    if (state != nullptr && state->Integer() != kLoginDone) {
-      const Value* reason = result.value.Find("__qi_auth_err_reason");
-      transport_.Close("login refused" + (reason == nullptr ? "" : ": " + reason->Text()));
-      return;
-    }
-  } else if (login_asked) {
-    transport_.Close("login refused: the robot knows no login");
+  if (message.type == MessageType::kCapability) {
+    // A server that knows no authentication may say so by its capabilities. Others send them of their own accord: with
+    // a login only the answer to it counts.
+    if (!login_asked) BeReady();
     return;
   }
+  const Result result = ResultOf(message, Capabilities());
+  if (message.type == MessageType::kReply && !result.ok) {
+    transport_.Close("login: " + result.error);
+  } else if (message.type == MessageType::kReply) {
+    HandleLoginState(result.value);
+  } else if (login_asked) {
+    transport_.Close("login refused: " + result.error);
+  } else {
+    BeReady();  // a server that knows no authentication; one that wants it closes the connection
+  }
+}
+
+void Session::Connection::HandleLoginState(const Value& answer) {
+  const Value* state = answer.Find("__qi_auth_state");
+  if (state == nullptr || state->Integer() == kLoginDone) {
+    BeReady();
+    return;
+  }
+  if (state->Integer() == kLoginContinues && ++login_rounds_ < kMostLoginRounds) {
+    if (const Value* token = answer.Find("auth_newToken")) token_ = token->Text();
+    Authenticate();
+    return;
+  }
+  const Value* reason = answer.Find("__qi_auth_err_reason");
+  transport_.Close("login refused" + (reason == nullptr ? "" : ": " + reason->Text()));
+}
+
+void Session::Connection::BeReady() {
   stage_ = Stage::kReady;
   for (const Message& waiting : std::exchange(waiting_, {})) transport_.Send(waiting);
 }
@@ -108,6 +131,7 @@ void Session::Connection::Call(const Address& address, std::string payload, cons
   message.object = address.object;
   message.action = address.action;
   message.payload = std::move(payload);
+  last_service_ = address.service;
   pending_[message.id] = {returned, std::move(on_result), now_ + timeout_us, timeout_us};
   if (stage_ == Stage::kReady) {
     transport_.Send(message);
@@ -134,6 +158,7 @@ void Session::Connection::HandleEvent(const Message& message) {
 }
 
 void Session::Connection::Handle(const Message& message) {
+  unanswered_ = 0;
   if (stage_ == Stage::kAuthenticating) {
     const bool answer = message.id == login_id_ && message.type != MessageType::kEvent;
     if (answer || message.type == MessageType::kCapability) HandleLogin(message);
@@ -169,9 +194,26 @@ void Session::Connection::Expire() {
       i = pending_.erase(i);
     }
   }
+  unanswered_ += static_cast<int>(late.size());
   for (const Pending& pending : late) {
     pending.on_result({false, {}, "no answer within " + std::to_string(pending.timeout / 1000) + " ms"});
   }
+}
+
+/// A call without an answer says nothing of the others. After some in a row without any other word from there, an
+/// object is asked what it can do: who does not even answer that is gone, though the network does not say so.
+void Session::Connection::Doubt() {
+  if (probing_ || unanswered_ < kUnansweredUntilDoubt || closed() || stage_ != Stage::kReady) return;
+  probing_ = true;
+  static const Signature kArgument = ParseSignature("(I)");
+  Call(
+      {last_service_, kMainObject, kMetaObjectAction}, Encode(kArgument, Tuple{List{0}}),
+      ParseSignature(kMetaObjectSignature),
+      [this](const Result&) {
+        probing_ = false;
+        if (unanswered_ > 0) transport_.Close(ToString(endpoint()) + " does not answer any more");
+      },
+      options_.call_timeout_us);
 }
 
 void Session::Connection::Poll(int64_t now) {
@@ -180,6 +222,7 @@ void Session::Connection::Poll(int64_t now) {
   if (stage_ == Stage::kConnecting && transport_.state() == Transport::State::kOpen) Authenticate();
   while (const auto message = transport_.Receive()) Handle(*message);
   Expire();
+  Doubt();
 }
 
 void Session::Connection::FailAll(const std::string& error) {

@@ -56,15 +56,22 @@ class Session::Connection {
 
   void Authenticate();
   void HandleLogin(const Message& message);
+  void HandleLoginState(const Value& answer);
+  void BeReady();
   void Handle(const Message& message);
   void HandleEvent(const Message& message);
   void Expire();
+  void Doubt();
 
   const SessionOptions& options_;
+  std::string token_;  // the robot may give a new one
   Transport transport_;
   Stage stage_ = Stage::kConnecting;
   int64_t now_ = 0;
-  uint32_t next_id_ = 1, login_id_ = 0;
+  uint32_t next_id_ = 1, login_id_ = 0, last_service_ = 1;
+  int login_rounds_ = 0;
+  int unanswered_ = 0;  // calls in a row since the last word from the other side
+  bool probing_ = false;
   std::map<uint32_t, Pending> pending_;
   std::vector<Message> waiting_;  // for the login to be done
   std::map<Address, Listener> listeners_;

@@ -104,11 +104,18 @@ void Session::Poll(int64_t now) {
     Fail("no answer from " + ToString(endpoint_));
     return;
   }
-  for (const auto& connection : connections) {  // a service's process has died: start anew, its ids are gone
-    if (connection->closed()) {
-      Fail(std::string(connection->problem()));
+  for (const auto& connection : connections) {
+    if (!connection->closed() || connections_.empty()) continue;
+    const std::string problem = connection->problem();
+    const bool used = std::any_of(services_.begin(), services_.end(),
+                                  [&](const auto& entry) { return entry.second->connection == connection; });
+    if (used) {  // a service's process has died: start anew, its ids are gone
+      Fail(problem);
       return;
     }
+    // A service that could never be reached: the others go on without it.
+    std::erase(connections_, connection);
+    connection->FailAll(problem);
   }
 }
 

@@ -1,11 +1,13 @@
 #include "services/robot_bridge/qi/transport.h"
 
+#include <arpa/inet.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <poll.h>
+#include <signal.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -24,6 +26,22 @@ namespace {
 
 constexpr size_t kLargestPayload = 16 << 20;
 constexpr size_t kMostOutgoing = 8 << 20;
+
+/// A robot that loses its power or its network says no farewell.
+void GiveUpOnSilence(int fd) {
+  const int yes = 1, idle = 5, interval = 2, probes = 3;  // s, s
+  const unsigned unacknowledged = 10000;                  // ms
+  setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
+  setsockopt(fd, IPPROTO_TCP, TCP_KEEPIDLE, &idle, sizeof idle);
+  setsockopt(fd, IPPROTO_TCP, TCP_KEEPINTVL, &interval, sizeof interval);
+  setsockopt(fd, IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
+  setsockopt(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, &unacknowledged, sizeof unacknowledged);
+}
+
+bool IsAddress(const std::string& host) {
+  in6_addr address{};
+  return inet_pton(AF_INET, host.c_str(), &address) == 1 || inet_pton(AF_INET6, host.c_str(), &address) == 1;
+}
 
 }  // namespace
 
@@ -127,7 +145,7 @@ void Transport::StartConnecting() {
   if (fd_ < 0) return;
   const int yes = 1;
   setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  setsockopt(fd_, SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
+  GiveUpOnSilence(fd_);
   if (connect(fd_, reinterpret_cast<const sockaddr*>(&address.storage), address.size) == 0 || errno == EINPROGRESS)
     return;
   problem_ = std::strerror(errno);
@@ -156,13 +174,14 @@ void Transport::FinishConnecting() {
 }
 
 void Transport::StartTls() {
+  signal(SIGPIPE, SIG_IGN);  // OpenSSL writes by write(2): a server that dies must not take this process with it
   tls_ = std::make_unique<Tls>();
   tls_->context = SSL_CTX_new(TLS_client_method());
   SSL_CTX_set_min_proto_version(tls_->context, TLS1_2_VERSION);
   SSL_CTX_set_verify(tls_->context, SSL_VERIFY_NONE, nullptr);
   SSL_CTX_set_mode(tls_->context, SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER);
   tls_->ssl = SSL_new(tls_->context);
-  SSL_set_tlsext_host_name(tls_->ssl, endpoint_.host.c_str());
+  if (!IsAddress(endpoint_.host)) SSL_set_tlsext_host_name(tls_->ssl, endpoint_.host.c_str());  // RFC 6066: names only
   SSL_set_fd(tls_->ssl, fd_);
 }
 

@@ -2,6 +2,7 @@
 // of date, and prints what became of each: one line "ID STATE" at the end.
 //
 // usage: robot_link_sender URL STATION COUNT KEY_FILE
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +31,18 @@ struct Sent {
   int64_t begun = 0, next = 0;
   ActState state = ActState::kNone;
 };
+
+/// The same command under other numbers: unsigned, signed by another's key, and with the signature of the true one.
+void Forge(Bus& bus, robot_command_t message, const std::string& key) {
+  message.id += 1000;
+  bus.Publish(message);
+  std::fill(std::begin(message.hmac), std::end(message.hmac), uint8_t{0});
+  message.id += 1000;
+  bus.Publish(message);
+  message.id += 1000;
+  Sign(message, key + "x");
+  bus.Publish(message);
+}
 
 }  // namespace
 
@@ -67,6 +80,7 @@ int main(int argc, char** argv) {
       robot_command_t message = ToMessage(sent.command);
       if (!key.empty()) Sign(message, key);
       bus.Publish(message);
+      if (!key.empty()) Forge(bus, message, key);
     }
     bus.Handle(20);
   }

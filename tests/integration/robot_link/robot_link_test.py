@@ -1,5 +1,6 @@
 """The robot bridge on another host: two network namespaces joined by a cable that loses one packet in a hundred both ways
-and is cut for five seconds. Every command is carried out once or is out of date; none twice.
+and is cut for five seconds. Every command is carried out once or is out of
+date; none twice, and none that is forged.
 
 Runs itself again in a network namespace of its own. Skipped (exit code 77) where that can't be had, or without nft.
 
@@ -75,14 +76,21 @@ def main():
         bridge.terminate()
         bridge.wait(10)
         log.seek(0)
-        said = re.findall(r"robot: say (\d+) ", log.read())
-        problems = [f"command {i} said {said.count(i)} times" for i in set(said) if said.count(i) > 1]
+        lines = log.read()
+        said = re.findall(r"robot: say (\d+) ", lines)
+        forged = [i for i in said if int(i) > COUNT]
+        refused = len(re.findall("its signature is not of this station's key", lines))
+        said = [i for i in said if int(i) <= COUNT]
+        problems = [f"the forged command {i} was said" for i in forged]
+        if refused < COUNT:
+            problems.append(f"only {refused} forgeries were noticed")
+        problems += [f"command {i} said {said.count(i)} times" for i in set(said) if said.count(i) > 1]
         for command, state in states.items():
             if command in said and state != "done":
                 problems.append(f"command {command} was said, but the sender knows of '{state}'")
             if command not in said and state not in ("none", "expired"):
                 problems.append(f"command {command} was not said, but the sender was told '{state}'")
-        print(f"{COUNT} commands: {len(said)} said once, {COUNT - len(said)} out of date; {len(problems)} problems")
+        print(f"{COUNT} commands: {len(said)} said once, {COUNT - len(said)} out of date, {refused} forgeries refused; {len(problems)} problems")
         if len(said) < COUNT / 2 or len(said) == COUNT:
             problems.append("the cut was not what was meant")
         for problem in problems:

@@ -57,6 +57,14 @@ TEST(Station, MistakesNameFileLineAndKey) {
   EXPECT_THROW(ReadStation("/nowhere/station.yaml"), ConfigurationError);
 }
 
+TEST(Station, WhatLeavesTheHostIsSigned) {
+  EXPECT_THAT(ErrorOf("bus: {robot: 'udpm://239.1.1.1:7000?ttl=1'}\n"),
+              AllOf(HasSubstr("ttl=1"), HasSubstr("key_file")));
+  EXPECT_EQ(ErrorOf("bus: {robot: 'udpm://239.1.1.1:7000?ttl=1', key_file: key}\n"), "");
+  EXPECT_EQ(ErrorOf("bus: {robot: 'udpm://239.1.1.1:7000?ttl=0'}\n"), "");
+  EXPECT_EQ(ErrorOf("bus: {robot: 'udpm://239.1.1.1:7000'}\n"), "");
+}
+
 TEST(Station, AnEmptyFileIsAStationOfDefaults) {
   for (const char* text : {"", "\n", "# nothing yet\n"}) {
     const Station station = ParseStation(text, "station.yaml");

@@ -3,13 +3,14 @@
 protocol's description. Service, method and object ids differ in every run.
 
 usage: fake_qi_server.py [--port N] [--seed N] [--user U --token T] [--tls CERT KEY] [--no-authenticate] [--seven]
-                         [--two-processes]
+                         [--two-processes] [--two-rounds] [--capability-first] [--ghost NAME] [--odd-messages]
 
 Prints one JSON line an event on standard output: {"listening": port}, {"call": "ALMotion.rest", "arguments": [...]},
 {"done": ...}. Takes orders on standard input, one a line:
   hang NAME     calls of service.method NAME get no answer            fail NAME     they get an error
   ok NAME       they work again                                       touch 1|0     the head is touched
   drop          all connections are cut                               standing      the robot does not sit
+  freeze        nothing is answered any more, no connection is closed cut           half a message, then the end
 """
 import argparse, json, random, selectors, socket, ssl, struct, sys, threading, time
 
@@ -91,7 +92,7 @@ SERVICES = {
 class Robot:
     def __init__(self, options):
         self.options, self.random = options, random.Random(options.seed)
-        self.hanging, self.failing, self.lock = set(), set(), threading.RLock()
+        self.hanging, self.failing, self.lock, self.frozen = set(), set(), threading.RLock(), False
         self.posture, self.angles, self.speaking = 'Sit', {n: 0.5 * (a + b) for n, (a, b) in LIMITS.items()}, 0
         ids = self.random.sample(range(2, 4000), len(SERVICES))
         self.service_ids = dict(zip(SERVICES, ids))
@@ -148,7 +149,11 @@ class Connection(threading.Thread):
         try:
             with self.lock: self.stream.sendall(data)
         except OSError: pass
-    def answer(self, call, kind, payload, flags=0): self.send(header(call['id'], len(payload), kind, call['service'], call['object'], call['action'], flags) + payload)
+    def answer(self, call, kind, payload, flags=0):
+        if self.robot.options.odd_messages:  # of unknown types, with unknown flags, to nobody, too late
+            self.send(header(call['id'], 4, 77, 3, 3, 3, 0xfe) + b'junk' + header(call['id'] + 999, 0, 2, 1, 1, 2) + header(0, 3, 5, 9, 9, 9) + b'abc')
+            flags |= 0xf0
+        self.send(header(call['id'], len(payload), kind, call['service'], call['object'], call['action'], flags) + payload)
     def error(self, call, words): self.answer(call, 3, dynamic('s', text(words)))
 
     def run(self):
@@ -171,6 +176,7 @@ class Connection(threading.Thread):
             except OSError: pass
 
     def handle(self, call, payload):
+        if self.robot.frozen: return
         if call['kind'] not in (1, 4): log({'violation': 'message type %d' % call['kind']}); return
         where = (call['service'], call['object'], call['action'])
         if where == (0, 0, 8): return self.authenticate(call, payload)
@@ -186,7 +192,14 @@ class Connection(threading.Thread):
         if options.no_authenticate: return self.error(call, 'unknown function')
         given = read(Reader(payload), '{sm}')
         log({'login': {key: value for key, value in given.items() if key.startswith('auth')}, 'capabilities': sorted(key for key in given if not key.startswith('auth'))})
-        refused = options.token and (given.get('auth_user'), given.get('auth_token')) != (options.user, options.token)
+        if options.capability_first: self.send(header(7, 4, 6, 0, 0, 0) + u32(0))
+        token = options.token
+        if options.two_rounds:  # a first token is exchanged for one of the robot's own
+            token = 'fresh' if getattr(self, 'asked_again', False) else options.token
+            if given.get('auth_token') == options.token and not getattr(self, 'asked_again', False):
+                self.asked_again = True
+                return self.answer(call, 2, u32(2) + text('__qi_auth_state') + dynamic('I', u32(2)) + text('auth_newToken') + dynamic('s', text('fresh')))
+        refused = token and (given.get('auth_user'), given.get('auth_token')) != (options.user, token)
         if refused:
             self.error(call, 'authentication failed'); self.stream.shutdown(socket.SHUT_RDWR); return
         self.authenticated = True
@@ -204,6 +217,7 @@ class Connection(threading.Thread):
         scheme = 'tcps' if self.robot.options.tls else 'tcp'
         port = self.robot.options.second_port if self.robot.options.two_processes and name == 'ALMotion' else self.port
         endpoints = ['%s://127.0.0.1:%d' % (scheme, port), '%s://192.0.2.7:%d' % (scheme, port)]
+        if self.robot.options.ghost == name: endpoints = ['%s://127.0.0.1:1' % scheme]  # nobody listens there
         out = text(name) + u32(self.robot.service_ids[name]) + text('machine') + u32(77) + u32(len(endpoints)) + b''.join(map(text, endpoints)) + text('session')
         self.answer(call, 2, out + (text(b'\xff\x00\xfe binary') if self.robot.options.seven else b''))
 
@@ -252,8 +266,8 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('--port', type=int, default=0); parser.add_argument('--seed', type=int, default=None)
     parser.add_argument('--user'); parser.add_argument('--token'); parser.add_argument('--tls', nargs=2)
-    for flag in ('no-authenticate', 'seven', 'two-processes', 'will-not-sit'): parser.add_argument('--' + flag, action='store_true')
-    parser.add_argument('--without', nargs='*', default=[]); parser.add_argument('--posture', default='Sit')
+    for flag in ('no-authenticate', 'seven', 'two-processes', 'will-not-sit', 'two-rounds', 'capability-first', 'odd-messages'): parser.add_argument('--' + flag, action='store_true')
+    parser.add_argument('--ghost'); parser.add_argument('--without', nargs='*', default=[]); parser.add_argument('--posture', default='Sit')
     options = parser.parse_args()
     robot, connections = Robot(options), []
     robot.posture = options.posture
@@ -269,16 +283,20 @@ def main():
         if words[0] == 'hang': robot.hanging.add(words[1])
         if words[0] == 'fail': robot.failing.add(words[1])
         if words[0] == 'ok': robot.hanging.discard(words[1]); robot.failing.discard(words[1])
-        if words[0] == 'touch':
-            for connection, service, number, signal in robot.links:
-                if robot.subscribers.get(number) != 'FrontTactilTouched': continue
-                payload = dynamic('f', struct.pack('<f', float(words[1])))
-                connection.send(header(9, len(payload), 5, service, number, signal) + payload)
-        if words[0] == 'drop':
+        if words[0] == 'freeze': robot.frozen = True
+        if words[0] == 'cut':
+            for connection in connections:
+                connection.send(header(1, 5000, 2, 1, 1, 2) + b'half')
+        if words[0] in ('cut', 'drop'):
             robot.links.clear()
             for connection in connections:
                 try: connection.stream.shutdown(socket.SHUT_RDWR)
                 except OSError: pass
             connections.clear()
+        if words[0] == 'touch':
+            for connection, service, number, signal in robot.links:
+                if robot.subscribers.get(number) != 'FrontTactilTouched': continue
+                payload = dynamic('f', struct.pack('<f', float(words[1])))
+                connection.send(header(9, len(payload), 5, service, number, signal) + payload)
 
 main()

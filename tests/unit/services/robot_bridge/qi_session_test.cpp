@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
+#include <thread>
 
 #include "fake_qi_server.h"
 #include "services/robot_bridge/qi/session.h"
@@ -131,14 +133,118 @@ TEST(QiSessionTest, ServerWithoutLogin) {
   EXPECT_THAT(asks.problem(), HasSubstr("login"));
 }
 
-TEST(QiSessionTest, Tls) {
-  const auto folder = std::filesystem::temp_directory_path() / ("coach_qi_tls_" + std::to_string(getpid()));
+TEST(QiSessionTest, CapabilitiesOfTheirOwnAccordAreNoAnswerToALogin) {
+  const FakeQiServer server({"--user", "nao", "--token", "secret", "--capability-first"});
+  SessionOptions options = OptionsFor(server.url());
+  options.user = "nao";
+  options.token = "secret";
+  Session good(options);
+  EXPECT_TRUE(Connect(good)) << good.problem();
+  options.token = "wrong";
+  Session bad(options);
+  EXPECT_FALSE(Connect(bad, 1));
+  EXPECT_THAT(bad.problem(), HasSubstr("login refused: authentication failed"));
+  EXPECT_THAT(server.Violations(), IsEmpty());
+}
+
+TEST(QiSessionTest, LoginOfTwoRoundsWithANewToken) {
+  const FakeQiServer server({"--user", "nao", "--token", "secret", "--two-rounds"});
+  SessionOptions options = OptionsFor(server.url());
+  options.user = "nao";
+  options.token = "secret";
+  Session session(options);
+  ASSERT_TRUE(Connect(session)) << session.problem();
+  EXPECT_TRUE(CallAndWait(session, "ALSystem", "systemVersion", {}).ok);
+  EXPECT_THAT(server.Violations(), IsEmpty());
+}
+
+TEST(QiSessionTest, UnknownTypesFlagsAndAnswersToNobodyAreIgnored) {
+  const FakeQiServer server({"--odd-messages"});
+  Session session(OptionsFor(server.url()));
+  ASSERT_TRUE(Connect(session)) << session.problem();
+  EXPECT_EQ(CallAndWait(session, "ALSystem", "systemVersion", {}).value.Text(), "2.8.6.23");
+  EXPECT_EQ(session.generation(), 1);
+}
+
+TEST(QiSessionTest, AServiceThatNobodyCanReachDoesNotTakeTheOthersAlong) {
+  const FakeQiServer server({"--ghost", "ALBattery"});
+  Session session(OptionsFor(server.url()));
+  ASSERT_TRUE(Connect(session));
+  EXPECT_TRUE(CallAndWait(session, "ALMotion", "rest", {}).ok);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_THAT(CallAndWait(session, "ALBattery", "getBatteryCharge", {}).error, HasSubstr("127.0.0.1:1"));
+    EXPECT_TRUE(CallAndWait(session, "ALMotion", "rest", {}).ok);
+  }
+  EXPECT_EQ(session.generation(), 1);
+}
+
+TEST(QiSessionTest, ARobotThatFreezesIsNoticedAHangingCallIsNoFreeze) {
+  FakeQiServer server;
+  SessionOptions options = OptionsFor(server.url());
+  options.call_timeout_us = 200000;
+  Session session(options);
+  ASSERT_TRUE(Connect(session));
+  server.Order("hang ALMotion.rest");
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(CallAndWait(session, "ALMotion", "rest", {}).ok);
+  EXPECT_TRUE(session.connected()) << "the rest of the robot answers";
+  server.Order("freeze");
+  const auto poll = [&] { session.Poll(SteadyNow()); };
+  Until(0.2, poll, [] { return false; });
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(CallAndWait(session, "ALMotion", "rest", {}).ok);
+  EXPECT_TRUE(Until(2, poll, [&] { return !session.connected(); }));
+  EXPECT_THAT(session.problem(), HasSubstr("does not answer any more"));
+}
+
+TEST(QiSessionTest, HalfAMessageAndTheEndStartAnew) {
+  FakeQiServer server;
+  Session session(OptionsFor(server.url()));
+  ASSERT_TRUE(Connect(session));
+  server.Order("cut");
+  const auto poll = [&] { session.Poll(SteadyNow()); };
+  EXPECT_TRUE(Until(3, poll, [&] { return session.generation() == 2 && session.connected(); }));
+  EXPECT_TRUE(CallAndWait(session, "ALMotion", "rest", {}).ok);
+}
+
+/// Certificate and key for the fake robot; nothing without an openssl program.
+std::optional<std::vector<std::string>> TlsArguments(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   const std::string certificate = folder / "cert.pem", key = folder / "key.pem";
   const std::string command = "openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=nao -keyout " + key +
                               " -out " + certificate + " 2>/dev/null";
-  if (std::system(command.c_str()) != 0) GTEST_SKIP() << "no openssl program to make a certificate";
-  const FakeQiServer server({"--tls", certificate, key, "--user", "nao", "--token", "t"});
+  if (std::system(command.c_str()) != 0) return std::nullopt;
+  return std::vector<std::string>{"--tls", certificate, key, "--user", "nao", "--token", "t"};
+}
+
+TEST(QiSessionTest, TlsRobotThatIsKilledAndRestarted) {
+  const auto folder = std::filesystem::temp_directory_path() / ("coach_qi_kill_" + std::to_string(getpid()));
+  auto arguments = TlsArguments(folder);
+  if (!arguments) GTEST_SKIP() << "no openssl program to make a certificate";
+  auto server = std::make_unique<FakeQiServer>(*arguments);
+  SessionOptions options = OptionsFor("tcps://127.0.0.1:" + std::to_string(server->port()));
+  options.user = "nao";
+  options.token = "t";
+  Session session(options);
+  ASSERT_TRUE(Connect(session)) << session.problem();
+  ASSERT_TRUE(CallAndWait(session, "ALMotion", "rest", {}).ok);
+  const std::string port = std::to_string(server->port());
+  server->Kill();
+  for (int i = 0; i < 20; ++i) {  // written to who is no more
+    session.Call("ALMotion", "rest", {}, [](const Result&) {});
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  arguments->insert(arguments->end(), {"--port", port});
+  server = std::make_unique<FakeQiServer>(*arguments);
+  EXPECT_TRUE(Until(
+      5, [&] { session.Poll(SteadyNow()); }, [&] { return session.connected() && session.generation() == 2; }));
+  EXPECT_TRUE(CallAndWait(session, "ALMotion", "rest", {}).ok);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(QiSessionTest, Tls) {
+  const auto folder = std::filesystem::temp_directory_path() / ("coach_qi_tls_" + std::to_string(getpid()));
+  const auto arguments = TlsArguments(folder);
+  if (!arguments) GTEST_SKIP() << "no openssl program to make a certificate";
+  const FakeQiServer server(*arguments);
   SessionOptions options = OptionsFor("tcps://127.0.0.1:" + std::to_string(server.port()));
   options.user = "nao";
   options.token = "t";
