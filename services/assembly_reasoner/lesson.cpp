@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace coach {
 namespace {
@@ -43,6 +44,7 @@ void Lesson::Choose(size_t task) {
   reasoner_ = std::make_unique<AssemblyReasoner>(tasks_[task], options_.reasoner);
   skipped_.clear();
   poses_.reset();
+  begins_with_poses_ = false;
   state_ = {};
 }
 
@@ -50,6 +52,7 @@ void Lesson::Begin(int64_t session) {
   session_ = session;
   begun_ = true;
   skipped_.clear();
+  begins_with_poses_ = !poses_;
   policy_.Begin(poses_ ? poses_->utime : 0);
 }
 
@@ -66,6 +69,8 @@ LessonOutput Lesson::Step(const PartPoses& poses) {
   out.belief = std::move(reasoned.belief);
   if (out.accepted) {
     poses_ = poses;
+    // Started before the camera gave its first picture: there was no time yet.
+    if (std::exchange(begins_with_poses_, false)) policy_.Begin(poses.utime);
     if (options_.start_by_itself && !begun_) Begin(poses.utime);
     Tell(reasoned.events, out);
     if (begun_) {

@@ -97,6 +97,7 @@ class Lesson {
   SpeechQueue speech_;
   ResponsePolicy policy_;
   bool begun_ = false;
+  bool begins_with_poses_ = false;  // begun, but no poses have come yet that would tell the time
   int64_t session_ = 0, last_event_ = 0, last_command_ = 0, help_requests_ = -1;
   std::vector<int> skipped_;
   std::optional<PartPoses> poses_;

@@ -87,7 +87,7 @@ void AddClutter(const RoomOptions& options, Room* room, Random& random) {
     const double y = random.Uniform(-0.2, 0.3);
     const double yaw = random.Uniform(-3, 3);
     const Material m = RandomMaterial(random, patterns);
-    Place place{{x, y}, 0.06};
+    Spot place{{x, y}, 0.06};
     switch (random.Pick(4)) {
       case 0: {
         const double r = random.Uniform(0.015, 0.03);

@@ -25,7 +25,7 @@ struct Fixture {
 };
 
 /// A round place on the table, m.
-struct Place {
+struct Spot {
   Eigen::Vector2d centre{0, 0};
   double radius = 0;
 };
@@ -36,7 +36,7 @@ struct Room {
   Lighting lighting;
   Material skin, clothes, hair;
   BodyShape body;
-  std::vector<Place> clutter;  ///< where things lie that are no part
+  std::vector<Spot> clutter;  ///< where things lie that are no part
 };
 
 Room MakeRoom(const RoomOptions& options, Random& random);

@@ -6,7 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "tools/simulator/lesson.h"
+#include "tools/simulator/enactment.h"
 #include "tools/simulator/shapes.h"
 
 namespace coach {
@@ -136,7 +136,7 @@ void Build(Making* m) {
     const Pose place = StructurePlace(m->task, m->structure, *m->solids, m->random);
     m->Place(ScatterParts(m->task, *m->solids, m->structure, place, m->scenario.stage.room.clutter, 0.3, m->random));
     m->child->set_now(1.2);
-    Lesson(m->task, m->structure, *m->solids, m->child.get(), &m->scenario.performance, &m->random).Play(plan);
+    Enactment(m->task, m->structure, *m->solids, m->child.get(), &m->scenario.performance, &m->random).Play(plan);
     const double limit = m->scenario.options.seconds;
     if (limit <= 0 || m->child->now() <= limit) break;
   }

@@ -13,6 +13,8 @@
 #include "common/assembly/task_file.h"
 #include "tools/evaluate/evaluation.h"
 #include "tools/simulator/scene_recorder.h"
+#include "tools/study/guidance_study.h"
+#include "tools/study/report_text.h"
 #include "tools/study/study.h"
 
 namespace coach {
@@ -65,25 +67,6 @@ class TemporaryScene {
   double rate_ = 30;
 };
 
-std::string Number(double x, int digits = 2) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << x;
-  return out.str();
-}
-
-std::string Share(int k, int n) {
-  const Interval i = WilsonInterval(k, n);
-  return n == 0 ? "-"
-                : Number(100.0 * k / n, 1) + " % (" + std::to_string(k) + "/" + std::to_string(n) + ", " +
-                      Number(i.low, 0) + " to " + Number(i.high, 0) + ")";
-}
-
-std::string Median(const std::vector<double>& values, int digits = 2) {
-  if (values.empty()) return "-";
-  const Interval i = MedianInterval(values);
-  return Number(Quantile(values, 0.5), digits) + " (" + Number(i.low, digits) + " to " + Number(i.high, digits) + ")";
-}
-
 Json Finite(const std::vector<double>& values) {
   Json list = Json::array();
   for (const double x : values) list.push_back(std::isfinite(x) ? Json(std::round(1e4 * x) / 1e4) : Json());
@@ -94,13 +77,6 @@ std::vector<double> Doubles(const Json& list) {
   std::vector<double> values;
   for (const Json& x : list) values.push_back(x.is_null() ? std::numeric_limits<double>::infinity() : x.get<double>());
   return values;
-}
-
-void WriteText(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error(file.string() + ": can't be written");
 }
 
 int Recovered(const PoseScores& s) {
@@ -397,10 +373,11 @@ const Experiment& FindExperiment(const std::string& name) {
   static const Fig4Study fig4;
   static const StartStudy start;
   static const Table1Study table1;
-  for (const Experiment* e : std::initializer_list<const Experiment*>{&fig4, &start, &table1}) {
+  static const GuidanceStudy guidance;
+  for (const Experiment* e : std::initializer_list<const Experiment*>{&fig4, &start, &table1, &guidance}) {
     if (e->name() == name) return *e;
   }
-  throw std::invalid_argument("study: found " + name + ", expected fig4, start or table1");
+  throw std::invalid_argument("study: found " + name + ", expected fig4, start, table1 or guidance");
 }
 
 }  // namespace coach

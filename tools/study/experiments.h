@@ -1,4 +1,4 @@
-// The paper's experiments on simulated scenes: Fig. 4, starting from nothing, Table I.
+// Experiments on simulated scenes: the paper's Fig. 4, starting from nothing, Table I, and what guidance brings.
 #pragma once
 
 #include <filesystem>
@@ -29,7 +29,7 @@ class Experiment {
   virtual std::string Report(const std::vector<std::string>& results, const std::filesystem::path& folder) const = 0;
 };
 
-/// fig4, start or table1. @throws std::invalid_argument for another name.
+/// fig4, start, table1 or guidance. @throws std::invalid_argument for another name.
 const Experiment& FindExperiment(const std::string& name);
 
 }  // namespace coach

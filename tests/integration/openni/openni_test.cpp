@@ -136,6 +136,33 @@ TEST_F(OpenNi, ARecordingOfTheCameraPlaysThroughCapture) {
   EXPECT_EQ(reader.errors(), 0);
 }
 
+TEST_F(OpenNi, AChildAtATableIsACamera) {
+  std::ofstream(Path("station.yaml")) << "station: S\nbus: {table: 'memq://'}\ntask: " COACH_SOURCE_DIR
+                                         "/deploy/tasks/rectangle_long_medium.yaml\n";
+  setenv("COACH_OPENNI2_CHILD", "never-listens", 1);
+  setenv("COACH_OPENNI2_TRUTH", Path("truth").c_str(), 1);
+  CaptureOptions options;
+  options.fps = 15;
+  {
+    const auto source = OpenOpenNiDevice("coach-child:" + Path("station.yaml"), options);
+    Frame frame;
+    int64_t first = -1;
+    for (int i = 0; i < 5; ++i) {
+      ASSERT_EQ(source->Next(frame, 2000), FrameSource::Outcome::kFrame);
+      if (first < 0) first = frame.utime;
+    }
+    EXPECT_GT(frame.utime, first);
+    EXPECT_EQ(frame.colour.cols, 640);
+    EXPECT_GT(cv::countNonZero(frame.depth), 640 * 480 / 2);
+    EXPECT_GT(frame.camera.fx, 500);
+  }
+  unsetenv("COACH_OPENNI2_TRUTH");
+  EXPECT_TRUE(fs::exists(Path("truth") + "/events.json"));
+  setenv("COACH_OPENNI2_CHILD", "obeys", 1);
+  EXPECT_THROW(OpenOpenNiDevice("coach-child:" + Path("station.yaml"), options), SourceLost);
+  unsetenv("COACH_OPENNI2_CHILD");
+}
+
 TEST_F(OpenNi, AnUnpluggedCameraIsFoundAgain) {
   setenv("COACH_OPENNI2_SCENE", folder_.c_str(), 1);
   setenv("COACH_OPENNI2_UNPLUG", "20", 1);

@@ -64,6 +64,9 @@ class Classroom {
     for (int i = 0; i < static_cast<int>(seconds / 0.2); ++i) Frame();
   }
 
+  /// Time passes without a picture.
+  void Wait(double seconds) { now_ += static_cast<int64_t>(1e6 * seconds); }
+
   struct Said {
     RobotCommand command;
     int64_t at = 0;
@@ -201,6 +204,14 @@ TEST(Lesson, FromGreetingToTheLastPraise) {
   EXPECT_EQ(room.Count("complete"), 1);
   EXPECT_EQ(room.Count("praise"), 2);
   EXPECT_EQ(room.Count("introduction"), 1);
+}
+
+TEST(Lesson, StartedBeforeTheFirstPictureItBeginsWithIt) {
+  Classroom room(1);
+  room.Operator(OperatorKind::kStart);
+  room.Wait(1'700'000'000.0);  // a live camera's time is that of the epoch
+  room.Run(20);
+  EXPECT_THAT(room.Keys(), testing::ElementsAre("introduction", "step"));
 }
 
 TEST(Lesson, HintsClimbTheLadderAndTheClockStopsWhileSomethingMoves) {

@@ -49,10 +49,26 @@ TEST(LiveLessonTest, AChildThatListensFinishesWithoutAMistake) {
   EXPECT_EQ(Count(lesson, "wrong_connect"), 0);
 }
 
-TEST(LiveLessonTest, AChildThatListensDoesNothingUnasked) {
+TEST(LiveLessonTest, AChildThatListensWaitsForAWordAndThenHelpsItself) {
   LiveLesson lesson = Start(Temper::kListens);
-  EXPECT_EQ(Teach(&lesson, false), 300);
+  for (double t = 0; t < 29; t += 0.1) lesson.Advance(t);
   EXPECT_TRUE(lesson.performance().events.empty());
+  const double end = Teach(&lesson, false);
+  EXPECT_GT(end, 50);
+  EXPECT_LT(end, 300);
+  EXPECT_GT(Count(lesson, "wrong_connect"), 0);
+}
+
+TEST(LiveLessonTest, WordsAreUnderstoodByTheirKey) {
+  LiveLesson lesson = Start(Temper::kListens);
+  lesson.Advance(1);
+  lesson.Hear("hello", 0);
+  for (double t = 1; t < 10; t += 0.1) lesson.Advance(t);
+  EXPECT_TRUE(lesson.performance().events.empty());
+  lesson.Hear("step", 0);
+  for (double t = 10; t < 20; t += 0.1) lesson.Advance(t);
+  EXPECT_EQ(Count(lesson, "connect"), 1);
+  EXPECT_THROW(TemperByName("obeys"), std::invalid_argument);
 }
 
 TEST(LiveLessonTest, AChildThatErrsIsCorrected) {

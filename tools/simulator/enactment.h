@@ -23,16 +23,16 @@ Pose StructurePlace(const Task& task, const Structure& structure, const Solids& 
 /// Poses of all parts apart from each other on the table outside the structure's place and of the places to avoid.
 /// `any_face`: chance that a part lies on another face than in the structure.
 std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Structure& structure,
-                               const Pose& X_W_structure, const std::vector<Place>& avoid, double any_face,
+                               const Pose& X_W_structure, const std::vector<Spot>& avoid, double any_face,
                                Random& random);
 
 /// A lesson that is planned act by act, at the child's now().
-class Lesson {
+class Enactment {
  public:
   /// All must outlive it. The part of the first slot lies at its place.
-  Lesson(const Task& task, const Structure& structure, const Solids& solids, Child* child, Performance* performance,
-         Random* random);
-  ~Lesson();
+  Enactment(const Task& task, const Structure& structure, const Solids& solids, Child* child, Performance* performance,
+            Random* random);
+  ~Enactment();
 
   /// Builds everything, with interludes.
   void Play(const LessonPlan& plan);

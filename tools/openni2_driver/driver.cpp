@@ -1,8 +1,12 @@
-// An OpenNI2 driver: a scene folder is a camera.
+// An OpenNI2 driver: a scene folder, or a simulated child at a table, is a camera.
 //
-// The camera is announced if $COACH_OPENNI2_SCENE names a folder (rate $COACH_OPENNI2_FPS, default 30 Hz), and opened
-// on demand for the address coach-scene:FOLDER. The scene begins again when it is over; time stamps grow. After
-// $COACH_OPENNI2_UNPLUG frames (default: never) the camera is unplugged, and plugged in again 0.5 s later.
+// A scene folder is announced if $COACH_OPENNI2_SCENE names it, and opened on demand for the address
+// coach-scene:FOLDER. It begins again when it is over; time stamps grow. A child is announced if $COACH_OPENNI2_STATION
+// names a station file, whose task the child builds and on whose network it hears the robot ($COACH_OPENNI2_CHILD:
+// listens, errs or never-listens; $COACH_OPENNI2_SEED: of room and child; $COACH_OPENNI2_TRUTH: folder for events.json,
+// what really happened), and opened on demand for coach-child:STATION.yaml. $COACH_OPENNI2_FPS is the rate of either
+// (30 Hz, child 15 Hz). After $COACH_OPENNI2_UNPLUG frames (default: never) the camera is unplugged, and plugged in
+// again 0.5 s later.
 #include <cmath>
 #include <cstdlib>
 #include <new>
@@ -23,17 +27,36 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
-#include "common/imaging/scene_folder.h"
+#include "tools/openni2_driver/picture_source.h"
 
 namespace coach {
 namespace {
 
-constexpr char kScheme[] = "coach-scene:";
+constexpr char kScene[] = "coach-scene:", kChild[] = "coach-child:";
 
-double FramesPerSecond() {
-  const char* text = std::getenv("COACH_OPENNI2_FPS");
-  const double fps = text ? std::atof(text) : 30;
-  return fps > 0 ? fps : 30;
+std::string Setting(const char* name, const std::string& otherwise = "") {
+  const char* text = std::getenv(name);
+  return text ? text : otherwise;
+}
+
+/// What follows `scheme` in the address; empty if it does not begin with it.
+std::string After(const std::string& uri, const std::string& scheme) {
+  return uri.rfind(scheme, 0) == 0 ? uri.substr(scheme.size()) : "";
+}
+
+bool IsOurs(const std::string& uri) { return !After(uri, kScene).empty() || !After(uri, kChild).empty(); }
+
+std::unique_ptr<PictureSource> OpenPictures(const std::string& uri) {
+  const double fps = std::atof(Setting("COACH_OPENNI2_FPS").c_str());
+  if (const std::string folder = After(uri, kScene); !folder.empty())
+    return OpenScenePictures(folder, fps > 0 ? fps : 30);
+  ChildOptions child;
+  child.station = After(uri, kChild);
+  child.temper = Setting("COACH_OPENNI2_CHILD", "listens");
+  child.seed = std::strtoull(Setting("COACH_OPENNI2_SEED", "1").c_str(), nullptr, 10);
+  if (fps > 0) child.fps = fps;
+  child.truth = Setting("COACH_OPENNI2_TRUTH");
+  return OpenChildPictures(child);
 }
 
 template <class T>
@@ -45,16 +68,16 @@ OniStatus Give(const T& value, void* data, int* size) {
 }
 
 /// One of the camera's two streams.
-class SceneStream final : public oni::driver::StreamBase {
+class PictureStream final : public oni::driver::StreamBase {
  public:
-  SceneStream(OniSensorType sensor, const CameraModel& camera, double fps, std::function<void(SceneStream*)> forget)
+  PictureStream(OniSensorType sensor, const CameraModel& camera, double fps, std::function<void(PictureStream*)> forget)
       : forget_(std::move(forget)), sensor_(sensor), camera_(camera) {
     mode_.pixelFormat = sensor == ONI_SENSOR_DEPTH ? ONI_PIXEL_FORMAT_DEPTH_1_MM : ONI_PIXEL_FORMAT_RGB888;
     mode_.resolutionX = camera.width;
     mode_.resolutionY = camera.height;
     mode_.fps = static_cast<int>(std::lround(fps));
   }
-  ~SceneStream() override { forget_(this); }
+  ~PictureStream() override { forget_(this); }
 
   const OniVideoMode& mode() const { return mode_; }
   OniSensorType sensor() const { return sensor_; }
@@ -140,26 +163,25 @@ class SceneStream final : public oni::driver::StreamBase {
  private:
   size_t RowBytes() const { return static_cast<size_t>(mode_.resolutionX) * (sensor_ == ONI_SENSOR_DEPTH ? 2U : 3U); }
 
-  std::function<void(SceneStream*)> forget_;
+  std::function<void(PictureStream*)> forget_;
   OniSensorType sensor_;
   CameraModel camera_;
   OniVideoMode mode_{};
   std::atomic<bool> started_{false};
 };
 
-class SceneDevice final : public oni::driver::DeviceBase {
+class PictureDevice final : public oni::driver::DeviceBase {
  public:
   /// @param plugged asked after each frame, with the number of frames so far, whether the camera goes on
-  SceneDevice(const std::string& folder, std::function<bool(int)> plugged)
-      : scene_(folder, {.fps = FramesPerSecond(), .utime_origin = 0}), plugged_(std::move(plugged)) {
-    const CameraModel& camera = scene_.camera(0);
+  PictureDevice(std::unique_ptr<PictureSource> pictures, std::function<bool(int)> plugged)
+      : pictures_(std::move(pictures)), plugged_(std::move(plugged)) {
     for (const OniSensorType sensor : {ONI_SENSOR_DEPTH, ONI_SENSOR_COLOR})
-      modes_[sensor] = SceneStream(sensor, camera, FramesPerSecond(), [](SceneStream*) {}).mode();
+      modes_[sensor] = PictureStream(sensor, pictures_->camera(), pictures_->fps(), [](PictureStream*) {}).mode();
     sensors_[0] = {ONI_SENSOR_DEPTH, 1, &modes_[ONI_SENSOR_DEPTH]};
     sensors_[1] = {ONI_SENSOR_COLOR, 1, &modes_[ONI_SENSOR_COLOR]};
     thread_ = std::thread([this] { Work(); });
   }
-  ~SceneDevice() override {
+  ~PictureDevice() override {
     {
       const std::lock_guard lock(mutex_);
       stop_ = true;
@@ -175,7 +197,8 @@ class SceneDevice final : public oni::driver::DeviceBase {
   }
   oni::driver::StreamBase* createStream(OniSensorType sensor) override {
     if (!modes_.contains(sensor)) return nullptr;
-    auto* stream = new SceneStream(sensor, scene_.camera(0), FramesPerSecond(), [this](SceneStream* s) { Forget(s); });
+    auto* stream =
+        new PictureStream(sensor, pictures_->camera(), pictures_->fps(), [this](PictureStream* s) { Forget(s); });
     const std::lock_guard lock(mutex_);
     streams_.push_back(stream);
     return stream;
@@ -195,26 +218,31 @@ class SceneDevice final : public oni::driver::DeviceBase {
   }
 
  private:
-  void Forget(SceneStream* stream) {
+  void Forget(PictureStream* stream) {
     const std::lock_guard lock(mutex_);
     std::erase(streams_, stream);
   }
 
   void Work() {
-    const auto begin = std::chrono::steady_clock::now();
-    for (int count = 0;; ++count) {
-      const Frame frame = scene_.Read(count % scene_.size());
-      const auto time = static_cast<uint64_t>(std::llround(count * scene_.period_us()));
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    int count = 0;
+    for (int frames = 1;; ++frames) {
+      const Frame frame = pictures_->At(count);
+      const auto time = static_cast<uint64_t>(std::llround(1e6 * count / pictures_->fps()));
       {
         std::unique_lock lock(mutex_);
         if (changed_.wait_until(lock, begin + std::chrono::microseconds(time), [this] { return stop_; })) return;
-        for (SceneStream* stream : streams_) stream->Raise(frame, time, count);
+        for (PictureStream* stream : streams_) stream->Raise(frame, time, count);
       }
-      if (!plugged_(count + 1)) return;
+      if (!plugged_(frames)) return;
+      // A picture that takes longer than a period makes the camera leave some out, not run late.
+      const double now = std::chrono::duration<double>(Clock::now() - begin).count();
+      count = std::max(count + 1, static_cast<int>(now * pictures_->fps()));
     }
   }
 
-  SceneReader scene_;
+  std::unique_ptr<PictureSource> pictures_;
   std::function<bool(int)> plugged_;
   std::map<OniSensorType, OniVideoMode> modes_;
   OniSensorInfo sensors_[2];
@@ -222,31 +250,33 @@ class SceneDevice final : public oni::driver::DeviceBase {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stop_ = false;
-  std::vector<SceneStream*> streams_;
+  std::vector<PictureStream*> streams_;
   std::thread thread_;
 };
 
-class SceneDriver final : public oni::driver::DriverBase {
+class PictureDriver final : public oni::driver::DriverBase {
  public:
-  explicit SceneDriver(OniDriverServices* services) : DriverBase(services) {}
+  explicit PictureDriver(OniDriverServices* services) : DriverBase(services) {}
 
   OniStatus initialize(oni::driver::DeviceConnectedCallback connected,
                        oni::driver::DeviceDisconnectedCallback disconnected,
                        oni::driver::DeviceStateChangedCallback changed, void* cookie) override {
     const OniStatus status = DriverBase::initialize(connected, disconnected, changed, cookie);
-    if (const char* folder = std::getenv("COACH_OPENNI2_SCENE"); folder && status == ONI_STATUS_OK)
-      Announce(kScheme + std::string(folder));
+    if (status != ONI_STATUS_OK) return status;
+    const std::string folder = Setting("COACH_OPENNI2_SCENE"), station = Setting("COACH_OPENNI2_STATION");
+    if (!folder.empty()) Announce(kScene + folder);
+    if (folder.empty() && !station.empty()) Announce(kChild + station);
     return status;
   }
   OniStatus tryDevice(const char* uri) override {
-    if (std::strncmp(uri, kScheme, std::strlen(kScheme)) != 0) return ONI_STATUS_ERROR;
+    if (!IsOurs(uri)) return ONI_STATUS_ERROR;
     Announce(uri);
     return ONI_STATUS_OK;
   }
 
   oni::driver::DeviceBase* deviceOpen(const char* uri, const char*) override {
     try {
-      return new SceneDevice(uri + std::strlen(kScheme), [this](int frames) { return StaysPlugged(frames); });
+      return new PictureDevice(OpenPictures(uri), [this](int frames) { return StaysPlugged(frames); });
     } catch (const std::exception& e) {
       getServices().errorLoggerAppend("%s", e.what());
       return nullptr;
@@ -267,7 +297,7 @@ class SceneDriver final : public oni::driver::DriverBase {
   void Announce(const std::string& uri) {
     std::strncpy(info_.uri, uri.c_str(), sizeof info_.uri - 1);
     std::strncpy(info_.vendor, "Coach", sizeof info_.vendor - 1);
-    std::strncpy(info_.name, "scene folder", sizeof info_.name - 1);
+    std::strncpy(info_.name, After(uri, kScene).empty() ? "simulated child" : "scene folder", sizeof info_.name - 1);
     deviceConnected(&info_);
   }
 
@@ -294,4 +324,4 @@ class SceneDriver final : public oni::driver::DriverBase {
 }  // namespace
 }  // namespace coach
 
-ONI_EXPORT_DRIVER(coach::SceneDriver)
+ONI_EXPORT_DRIVER(coach::PictureDriver)

@@ -1,4 +1,4 @@
-#include "tools/simulator/lesson.h"
+#include "tools/simulator/enactment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ constexpr double kReachX = 0.34;               // m: parts lie within this of th
 constexpr double kNearY = -0.2, kFarY = 0.17;  // m
 constexpr double kApart = 0.025;               // m between parts
 
-Place Footprint(const Solids& solids, int thing, const Pose& X_W) {
+Spot Footprint(const Solids& solids, int thing, const Pose& X_W) {
   const MeshExtent& e = solids.extent(thing);
   const Vector3 c = X_W * e.centre;
   Vector3 half = 0.5 * (e.high - e.low);
@@ -70,11 +70,11 @@ Pose StructurePlace(const Task& task, const Structure& structure, const Solids& 
 }
 
 std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Structure& structure,
-                               const Pose& X_W_structure, const std::vector<Place>& avoid, double any_face,
+                               const Pose& X_W_structure, const std::vector<Spot>& avoid, double any_face,
                                Random& random) {
   const int n = static_cast<int>(task.parts.size());
   std::vector<Matrix3> lying(static_cast<size_t>(n), Matrix3::Identity());
-  std::vector<Place> taken = avoid;
+  std::vector<Spot> taken = avoid;
   int first = 0;
   const bool builds = !BuildOrder(task, &first).empty();
   const int base = builds ? structure.part[static_cast<size_t>(first)] : -1;
@@ -102,8 +102,8 @@ std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Str
       R = Eigen::AngleAxisd(random.Uniform(-M_PI, M_PI), Vector3::UnitZ()).toRotationMatrix() * R;
       const Pose X = Resting(solids, part, R, reach * random.Uniform(-kReachX, kReachX),
                              random.Uniform(reach * kNearY, reach * kFarY));
-      const Place c = Footprint(solids, part, X);
-      const bool free = std::none_of(taken.begin(), taken.end(), [&](const Place& t) {
+      const Spot c = Footprint(solids, part, X);
+      const bool free = std::none_of(taken.begin(), taken.end(), [&](const Spot& t) {
         return (c.centre - t.centre).norm() < c.radius + t.radius + apart;
       });
       if (!free && attempt < 3000) continue;
@@ -115,7 +115,7 @@ std::vector<Pose> ScatterParts(const Task& task, const Solids& solids, const Str
   return poses;
 }
 
-struct Lesson::Impl {
+struct Enactment::Impl {
   Impl(const Task& task, const Structure& structure, const Solids& solids, Child* child, Performance* performance,
        Random& random)
       : task_(task),
@@ -237,10 +237,10 @@ struct Lesson::Impl {
       Y.linear() = Eigen::AngleAxisd(random_.Uniform(-1, 1), Vector3::UnitZ()).toRotationMatrix() * X.linear();
       if (std::abs(Y.translation().x()) > kReachX || Y.translation().y() < kNearY || Y.translation().y() > kFarY)
         continue;
-      const Place c = Footprint(solids_, part, Y);
+      const Spot c = Footprint(solids_, part, Y);
       bool free = true;
       for (int other : Others(part)) {
-        const Place o = Footprint(solids_, other, child_.PoseOf(other));
+        const Spot o = Footprint(solids_, other, child_.PoseOf(other));
         free = free && (c.centre - o.centre).norm() > c.radius + o.radius + 0.01;
       }
       if (free) return Y;
@@ -267,10 +267,10 @@ struct Lesson::Impl {
       const Matrix3 R =
           Eigen::AngleAxisd(random_.Uniform(-1, 1), Vector3::UnitZ()).toRotationMatrix() * child_.PoseOf(part).linear();
       const Pose X = Resting(solids_, part, R, x, random_.Uniform(kNearY, kFarY));
-      const Place c = Footprint(solids_, part, X);
+      const Spot c = Footprint(solids_, part, X);
       bool free = true;
       for (int other : Others(part)) {
-        const Place o = Footprint(solids_, other, child_.PoseOf(other));
+        const Spot o = Footprint(solids_, other, child_.PoseOf(other));
         free = free && (c.centre - o.centre).norm() > c.radius + o.radius + 0.01;
       }
       if (free) return X;
@@ -378,16 +378,16 @@ struct Lesson::Impl {
   const std::vector<std::string> classes_ = JointClasses(task_);  // of connections, then mistakes
 };
 
-Lesson::Lesson(const Task& task, const Structure& structure, const Solids& solids, Child* child,
-               Performance* performance, Random* random)
+Enactment::Enactment(const Task& task, const Structure& structure, const Solids& solids, Child* child,
+                     Performance* performance, Random* random)
     : impl_(std::make_unique<Impl>(task, structure, solids, child, performance, *random)) {}
-Lesson::~Lesson() = default;
+Enactment::~Enactment() = default;
 
-void Lesson::Play(const LessonPlan& plan) { impl_->Play(plan); }
-void Lesson::Build(int connection, bool near_miss) { impl_->Build(connection, near_miss); }
-bool Lesson::Err() { return impl_->Err(); }
-void Lesson::Undo() { impl_->Undo(); }
-bool Lesson::mistaken() const { return impl_->mistake_.has_value(); }
-bool Lesson::complete() const { return impl_->complete(); }
+void Enactment::Play(const LessonPlan& plan) { impl_->Play(plan); }
+void Enactment::Build(int connection, bool near_miss) { impl_->Build(connection, near_miss); }
+bool Enactment::Err() { return impl_->Err(); }
+void Enactment::Undo() { impl_->Undo(); }
+bool Enactment::mistaken() const { return impl_->mistake_.has_value(); }
+bool Enactment::complete() const { return impl_->complete(); }
 
 }  // namespace coach
