@@ -11,10 +11,7 @@ const std::vector<Blob>& BlobFinder::FindUnexplained(const Observation& o, const
   blobs_.clear();
   if (!o.class_map) return blobs_;
   constexpr int kStep = Blob::kStep;
-  width_ = o.camera.width / kStep;
-  height_ = o.camera.height / kStep;
-  open_.assign(static_cast<size_t>(width_) * height_, 0);
-  depth_.assign(open_.size(), 0.0f);
+  Resize(o.camera);
   for (int j = 0; j < height_; ++j) {
     const int y = j * kStep + kStep / 2;
     for (int i = 0; i < width_; ++i) {
@@ -43,16 +40,54 @@ const std::vector<Blob>& BlobFinder::FindUnexplained(const Observation& o, const
   }
   for (int c = 0; c < num_classes; ++c) {
     for (int cell = 0; cell < width_ * height_; ++cell) {
-      if (open_[static_cast<size_t>(cell)] & (1u << c)) Flood(o, c, cell);
+      const auto bit = static_cast<uint8_t>(1u << c);
+      if (!(open_[static_cast<size_t>(cell)] & bit)) continue;
+      Blob blob;
+      blob.colour_class = c;
+      Flood(o, bit, options_.depth_step, cell, blob);
+      if (blob.cells >= options_.least_cells) blobs_.push_back(std::move(blob));
     }
   }
   return blobs_;
 }
 
-void BlobFinder::Flood(const Observation& o, int colour_class, int start) {
-  const auto bit = static_cast<uint8_t>(1u << colour_class);
-  Blob blob;
-  blob.colour_class = colour_class;
+const std::vector<Blob>& BlobFinder::FindSurfaces(const Observation& o, const OwnerMap& owners, const Pose& X_TC,
+                                                  const TableArea& area) {
+  blobs_.clear();
+  if (!o.depth) return blobs_;
+  constexpr int kStep = Blob::kStep;
+  Resize(o.camera);
+  for (int j = 0; j < height_; ++j) {
+    const int y = j * kStep + kStep / 2;
+    for (int i = 0; i < width_; ++i) {
+      const int x = i * kStep + kStep / 2;
+      const float z = o.Depth(x, y);
+      if (z <= 0 || z > options_.farthest || owners.Owner(x, y) >= 0) continue;
+      const Vector3 p_T = X_TC * Vector3((x - o.camera.cx) / o.camera.fx * z, (y - o.camera.cy) / o.camera.fy * z, z);
+      if (p_T.z() < options_.surface_height || p_T.z() > options_.highest || !area.Over(p_T)) continue;
+      const size_t cell = static_cast<size_t>(j) * width_ + i;
+      open_[cell] = 1;
+      depth_[cell] = z;
+    }
+  }
+  for (int cell = 0; cell < width_ * height_; ++cell) {
+    if (!open_[static_cast<size_t>(cell)]) continue;
+    Blob blob;
+    blob.colour_class = -1;
+    Flood(o, 1, options_.surface_step, cell, blob);
+    if (blob.cells >= options_.least_surface_cells) blobs_.push_back(std::move(blob));
+  }
+  return blobs_;
+}
+
+void BlobFinder::Resize(const CameraModel& camera) {
+  width_ = camera.width / Blob::kStep;
+  height_ = camera.height / Blob::kStep;
+  open_.assign(static_cast<size_t>(width_) * height_, 0);
+  depth_.assign(open_.size(), 0.0f);
+}
+
+void BlobFinder::Flood(const Observation& o, uint8_t bit, double depth_step, int start, Blob& blob) {
   Vector3 sum = Vector3::Zero();
   stack_.assign(1, start);
   open_[static_cast<size_t>(start)] &= static_cast<uint8_t>(~bit);
@@ -76,15 +111,13 @@ void BlobFinder::Flood(const Observation& o, int colour_class, int start) {
       const int next = nj * width_ + ni;
       if (!(open_[static_cast<size_t>(next)] & bit)) continue;
       const float zn = depth_[static_cast<size_t>(next)];
-      if (z > 0 && zn > 0 && std::abs(z - zn) > options_.depth_step) continue;
+      if (z > 0 && zn > 0 && std::abs(z - zn) > depth_step) continue;
       open_[static_cast<size_t>(next)] &= static_cast<uint8_t>(~bit);
       stack_.push_back(next);
     }
   }
-  if (blob.cells < options_.least_cells) return;
   blob.centre /= blob.cells;
   if (blob.readings > 0) blob.p_C = sum / blob.readings;
-  blobs_.push_back(std::move(blob));
 }
 
 void Distractors::Remember(const std::vector<Blob>& blobs, const Pose& X_TC) {

@@ -15,8 +15,8 @@ namespace coach {
 /// A connected piece of one colour class, on a grid of Blob::kStep pixels.
 struct Blob {
   static constexpr int kStep = 4;  ///< px
-  int colour_class = 0;
-  int cells = 0;  ///< kStep x kStep pixels each
+  int colour_class = 0;            ///< -1: of any colour
+  int cells = 0;                   ///< kStep x kStep pixels each
   bool touches_border = false;
   Eigen::Vector2d centre{0, 0};         ///< px
   Vector3 p_C = Vector3::Zero();        ///< m, mean of its readings; zero if it has none
@@ -25,11 +25,14 @@ struct Blob {
 };
 
 struct BlobOptions {
-  int least_cells = 6;       ///< smaller ones are dropped
-  double highest = 0.60;     ///< m above the table; what is farther off is the room
-  double lowest = -0.02;     ///< m
-  double farthest = 3.0;     ///< m from the camera
-  double depth_step = 0.04;  ///< m; neighbours farther apart belong to different blobs
+  int least_cells = 6;            ///< smaller ones are dropped
+  double highest = 0.60;          ///< m above the table; what is farther off is the room
+  double lowest = -0.02;          ///< m
+  double farthest = 3.0;          ///< m from the camera
+  double depth_step = 0.04;       ///< m; neighbours farther apart belong to different blobs
+  double surface_height = 0.012;  ///< m above the table, from which on a surface is that of a thing
+  double surface_step = 0.012;    ///< m; neighbours farther apart are different things
+  int least_surface_cells = 30;   ///< smaller things are dropped
 };
 
 /// Finds blobs of class pixels outside the silhouettes in `owners` (cells of a part whose class is `colour_class` are
@@ -44,8 +47,13 @@ class BlobFinder {
                                            const std::vector<int>& class_of_part, int num_classes, const Pose& X_TC,
                                            const TableArea& area);
 
+  /// Blobs of whatever stands on the table and is no tracked part, by depth alone; their colour_class is -1.
+  const std::vector<Blob>& FindSurfaces(const Observation& observation, const OwnerMap& owners, const Pose& X_TC,
+                                        const TableArea& area);
+
  private:
-  void Flood(const Observation& observation, int colour_class, int start);
+  void Resize(const CameraModel& camera);
+  void Flood(const Observation& observation, uint8_t bit, double depth_step, int start, Blob& blob);
 
   BlobOptions options_;
   int width_ = 0, height_ = 0;

@@ -90,6 +90,13 @@ void RenderTile(const PartModel& model, const CameraModel& camera, const Pose& X
   tile.covered = static_cast<int>(std::count_if(tile.depth.begin(), tile.depth.end(), [](float d) { return d > 0; }));
 }
 
+int SampleStep(const PartModel& model, const CameraModel& camera, const Pose& X_CP, int least) {
+  constexpr double kSamples = 700;
+  const double z = std::max(kNear, X_CP.translation().z());
+  const double area = 4 * model.principal_half.x() * model.principal_half.y() * camera.fx * camera.fy / (z * z);
+  return least * std::max(1, static_cast<int>(std::sqrt(area / kSamples) / least));
+}
+
 double InImageFraction(const PartModel& model, const CameraModel& camera, const Pose& X_CP) {
   int in = 0, all = 0;
   for (size_t i = 0; i < model.surface.size(); i += 8) {

@@ -32,6 +32,10 @@ struct DepthTile {
 void RenderTile(const PartModel& model, const CameraModel& camera, const Pose& X_CP, int step, int margin,
                 DepthTile& tile);
 
+/// Level of detail: the step, a multiple of `least`, at which a part at this distance gets some hundred samples and not
+/// more, however large it is in the image.
+int SampleStep(const PartModel& model, const CameraModel& camera, const Pose& X_CP, int least);
+
 /// Part of the silhouette that lies inside the image, 0..1, by projected surface samples.
 double InImageFraction(const PartModel& model, const CameraModel& camera, const Pose& X_CP);
 

@@ -77,6 +77,7 @@ const PartPoses& FullFilter::Step(const FilterInput& input) {
   observation.has_table = camera_.started();
   observation.table = PlaneOf(camera_.X_TC());
   if (steps_ % 15 == 0) area_.Add(observation, camera_.X_TC());
+  depth_only_ = observation.DepthOnly();
   BuildOwners(observation, dt);
   OrderParts();
   UpdateLinks(input);
@@ -100,9 +101,10 @@ const PartPoses& FullFilter::Step(const FilterInput& input) {
         Coast(PartStatus::kLost, dt, options_.track, track);
       }
     }
-    if (track.alive()) UpdateTrack(part, observation, dt);
+    if (track.alive()) UpdateTrack(part, ViewFor(part, observation), dt);
   }
   Recover(observation);
+  FindOnTable(observation);
   for (size_t k = 0; k < tracks_.size(); ++k) Settle(before[k], dt, options_.track, tracks_[k]);
   RepairIdentities(observation);
   foreign_.Find(observation, owners_, camera_.X_TC(), area_, dt);
@@ -140,7 +142,7 @@ void FullFilter::FollowBodies(const Observation& observation, double dt) {
   followed_.assign(tracks_.size(), std::nullopt);
   if (!observation.depth || !observation.class_map) return;
   const auto at_prediction = [&](int part) {
-    return ScoreTile(tiles_[part], observation, owners_, part, bit_of_part_[part]);
+    return ScoreTile(tiles_[part], ViewFor(part, observation), owners_, part, bit_of_part_[part]);
   };
   const auto astray = [&](const Score& score) {
     return score.open() >= 20 && score.agreement() < options_.follow_agreement;
@@ -288,6 +290,10 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
     const Vector6 away = Difference(best.X_CP, expected);
     if (StepLength(away, 0.05) > 0.004) consider(expected);
   }
+  if (getenv("DBG"))
+    fprintf(stderr, "%ld part %d ll %.0f agr %.2f inl %d see %d wrong %d hid %d moving %d\n", steps_, part,
+            best.score.log_likelihood, best.score.agreement(), best.score.inlier, best.score.see_through,
+            best.score.wrong_colour, best.score.hidden, track.moving);
   TestRivals(part, observation, dt, carried ? &expected : nullptr, best);
   const double in_image = InImageFraction(shape.model, observation.camera, best.X_CP);
   const double open = best.full_samples > 0 ? best.score.open() / best.full_samples : 0;
@@ -387,10 +393,8 @@ void FullFilter::TestRivals(int part, const Observation& observation, double dt,
   const int tests = std::min(static_cast<int>(n), settled ? 1 : 3);
   for (int i = 0; i < tests; ++i) {
     const size_t which = static_cast<size_t>(track.next_rival++) % n;
-    Pose X = best.X_CP;
-    X.linear() = X.linear() * shape.model.near_symmetries[which];
-    const PoseCandidate c =
-        Polish(shape.model, observation, owners_, part, bit_of_part_[part], X, options_.refinement, scratch_);
+    const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit_of_part_[part],
+                                   best.X_CP * shape.model.near_symmetries[which], options_.refinement, scratch_);
     // Small but lasting differences decide: pixels are no independent witnesses, frames nearly are.
     const double gain = value(c) - value(best);
     const double unit = std::max(60.0, options_.rival_gain * std::abs(best.score.log_likelihood));
@@ -538,6 +542,36 @@ void FullFilter::Recover(const Observation& observation) {
     }
     Restart(best, camera_.X_TC(), tracks_[chosen]);
     Place(chosen, observation);
+  }
+}
+
+void FullFilter::FindOnTable(const Observation& observation) {
+  if (!observation.depth || !observation.class_map || steps_ % options_.surface_search_period != 0) return;
+  for (size_t k = 0; k < tracks_.size(); ++k) {
+    if (tracks_[k].status != PartStatus::kAbsent) continue;
+    const int part = static_cast<int>(k);
+    std::optional<PoseCandidate> best;
+    bool best_by_depth = false;
+    const auto& blobs = blob_finder_.FindSurfaces(observation, owners_, camera_.X_TC(), area_);
+    for (size_t b = 0; b < blobs.size(); ++b) {
+      // All of them at the start, later another one each time.
+      if (steps_ > 0 && b != static_cast<size_t>(steps_ / options_.surface_search_period) % blobs.size()) continue;
+      const double own = ShareOfClass(blobs[b].pixels, observation, bit_of_part_[k]);
+      if (own < options_.surface_own_colour) continue;
+      const bool by_depth = own < options_.surface_good_colour;
+      const auto found =
+          SearchPose(ShapeOf(part).model, ShapeOf(part).search_points, by_depth ? depth_only_ : observation, owners_,
+                     part, bit_of_part_[k], blobs[b], camera_.X_TC(), options_.surface_search, nullptr, scratch_);
+      if (!found || !Plausible(part, *found, false)) continue;
+      if (by_depth && (found->score.agreement() < options_.depth_agreement)) continue;
+      if (best && found->score.log_likelihood <= best->score.log_likelihood) continue;
+      best = found;
+      best_by_depth = by_depth;
+    }
+    if (!best) continue;
+    Restart(*best, camera_.X_TC(), tracks_[k]);
+    tracks_[k].by_depth = best_by_depth;
+    Place(part, observation);
   }
 }
 

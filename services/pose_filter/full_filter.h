@@ -38,8 +38,13 @@ struct FullFilterOptions {
   double least_jump_cost = 150;    ///< nats
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
+  int surface_search_period = 5;     ///< frames between two searches of things on the table
+  double surface_own_colour = 0.35;  ///< share of a thing's pixels that must be in the part's class,
+  double surface_good_colour = 0.7;  ///< from which on the part is followed by colour too
+  double depth_agreement = 0.85;     ///< Score::agreement of a part that is found by depth alone
   TrackOptions track;
   PoseSearchOptions search;
+  PoseSearchOptions surface_search{.refined = 16, .polished = 5, .least_outline = 0.35};
   RefinementOptions refinement;
   BodySearchOptions body;
   CameraMotionOptions camera;
@@ -67,6 +72,10 @@ class FullFilter final : public PoseFilter {
     bool known = false;  ///< its relative pose (which of the symmetric ones) was seen
     Pose X_AB = Pose::Identity();
   };
+  /// What of the frame a part may be judged by.
+  const Observation& ViewFor(int part, const Observation& observation) const {
+    return tracks_[static_cast<size_t>(part)].by_depth ? depth_only_ : observation;
+  }
   const Shape& ShapeOf(int part) const {
     return *shapes_[static_cast<size_t>(task_.parts[static_cast<size_t>(part)].type)];
   }
@@ -101,6 +110,8 @@ class FullFilter final : public PoseFilter {
   bool InReach(const Vector3& p_T) const;
   bool Plausible(int part, const PoseCandidate& found, bool distractor) const;
   void Recover(const Observation& observation);
+  /// Looks for a part that its colour did not show among the things that stand on the table.
+  void FindOnTable(const Observation& observation);
   void Place(int part, const Observation& observation);
   void Output(const FilterInput& input);
 
@@ -123,6 +134,7 @@ class FullFilter final : public PoseFilter {
   std::vector<DepthTile> tiles_;  // of each part, as added to owners_
   std::vector<Pose> suggested_;
   std::vector<Link> links_;
+  Observation depth_only_;                     // this frame without its colours
   std::vector<std::optional<Pose>> followed_;  // X_TP of parts that moved farther than predicted
   std::vector<Pose> poses_before_;
   std::vector<bool> updated_;  // parts whose pose is that of this frame

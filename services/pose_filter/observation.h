@@ -32,6 +32,14 @@ struct Observation {
   Plane table;                   ///< in this frame
   bool has_table = false;
 
+  /// The same frame without its colours.
+  Observation DepthOnly() const {
+    Observation o = *this;
+    o.class_map = nullptr;
+    o.bgr = nullptr;
+    return o;
+  }
+
   /// Whether a reading lies on the table: the table hides nothing, so a part predicted behind it is impossible.
   bool OnTable(int x, int y, double z) const {
     if (!has_table) return false;

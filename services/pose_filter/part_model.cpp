@@ -46,24 +46,85 @@ std::vector<ModelEdge> FindEdges(const TriangleMesh& mesh, const std::vector<Vec
   return edges;
 }
 
-void FindPrincipalAxes(PartModel& model) {
+struct HullFace {
+  Vector3 normal;  // outward
+  double area;
+};
+
+/// Flat faces of the convex hull, largest first.
+std::vector<HullFace> FindHullFaces(const PartModel& model) {
+  open3d::geometry::TriangleMesh in;
+  in.vertices_ = model.mesh.vertices;
+  for (const auto& t : model.mesh.triangles) in.triangles_.emplace_back(t[0], t[1], t[2]);
+  const auto hull = std::get<0>(open3d::geometry::Qhull::ComputeConvexHull(in.vertices_));
+  Vector3 centre = Vector3::Zero();
+  for (const SurfacePoint& s : model.surface) centre += s.p / model.surface.size();
+  std::vector<HullFace> faces;
+  for (size_t t = 0; t < hull->triangles_.size(); ++t) {
+    const Eigen::Vector3i c = hull->triangles_[t];
+    const Vector3 cross =
+        (hull->vertices_[c[1]] - hull->vertices_[c[0]]).cross(hull->vertices_[c[2]] - hull->vertices_[c[0]]);
+    const double area = cross.norm() / 2;
+    if (!(area > 0)) continue;
+    Vector3 n = cross.normalized();
+    if (n.dot(hull->vertices_[c[0]] - centre) < 0) n = -n;
+    const auto same =
+        std::find_if(faces.begin(), faces.end(), [&](const HullFace& f) { return f.normal.dot(n) > 0.995; });
+    if (same == faces.end()) {
+      faces.push_back({n, area});
+    } else {
+      same->area += area;
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const HullFace& a, const HullFace& b) { return a.area > b.area; });
+  return faces;
+}
+
+/// Axes of inertia; where two moments are alike they say nothing, and the normals of the largest faces do.
+Matrix3 FindAxes(const PartModel& model, const std::vector<HullFace>& faces) {
   Vector3 mean = Vector3::Zero();
   for (const SurfacePoint& s : model.surface) mean += s.p / model.surface.size();
   Matrix3 covariance = Matrix3::Zero();
   for (const SurfacePoint& s : model.surface) covariance += (s.p - mean) * (s.p - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver(covariance);
-  for (int i = 0; i < 3; ++i) model.principal_axes.col(i) = solver.eigenvectors().col(2 - i);
-  if (model.principal_axes.determinant() < 0) model.principal_axes.col(2) *= -1;
-  Vector3 low = Vector3::Constant(1e9), high = -low;
-  for (const SurfacePoint& s : model.surface) {
-    low = low.cwiseMin(model.principal_axes.transpose() * s.p);
-    high = high.cwiseMax(model.principal_axes.transpose() * s.p);
+  const Vector3 moments = solver.eigenvalues();
+  const bool distinct = moments[0] < 0.8 * moments[1] && moments[1] < 0.8 * moments[2];
+  if (!distinct && !faces.empty()) {
+    const Vector3 first = faces[0].normal;
+    const auto second = std::find_if(faces.begin(), faces.end(), [&](const HullFace& f) {
+      return std::abs(f.normal.dot(first)) < 0.05 && f.area > 0.1 * faces[0].area;
+    });
+    if (second != faces.end()) {
+      Matrix3 axes;
+      axes.col(0) = first;
+      axes.col(1) = (second->normal - second->normal.dot(first) * first).normalized();
+      axes.col(2) = axes.col(0).cross(axes.col(1));
+      return axes;
+    }
   }
-  model.principal_half = (high - low) / 2;
+  return solver.eigenvectors();
 }
 
-/// Turns about the principal axes that leave the box of half lengths nearly unchanged.
-std::vector<Matrix3> FindNearSymmetries(const PartModel& model) {
+void FindPrincipalBox(const std::vector<HullFace>& faces, PartModel& model) {
+  const Matrix3 axes = FindAxes(model, faces);
+  Vector3 low = Vector3::Constant(1e9), high = -low;
+  for (const SurfacePoint& s : model.surface) {
+    low = low.cwiseMin(axes.transpose() * s.p);
+    high = high.cwiseMax(axes.transpose() * s.p);
+  }
+  model.principal_centre = axes * (low + high) / 2;
+  const Vector3 half = (high - low) / 2;
+  std::array<int, 3> order{0, 1, 2};
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return half[a] > half[b]; });
+  for (int i = 0; i < 3; ++i) {
+    model.principal_axes.col(i) = axes.col(order[i]);
+    model.principal_half[i] = half[order[i]];
+  }
+  if (model.principal_axes.determinant() < 0) model.principal_axes.col(2) *= -1;
+}
+
+/// Turns about the principal axes, and about the middle of the box, that leave the box nearly unchanged.
+std::vector<Pose> FindNearSymmetries(const PartModel& model) {
   const Vector3& h = model.principal_half;
   const double tolerance = 0.25;
   const auto alike = [&](int i, int j) { return std::abs(h[i] - h[j]) < tolerance * std::max(h[i], h[j]); };
@@ -80,46 +141,21 @@ std::vector<Matrix3> FindNearSymmetries(const PartModel& model) {
   for (size_t i = 0; i < singles; ++i) {
     for (size_t j = 0; j < singles; ++j) candidates.push_back(candidates[i] * candidates[j]);
   }
-  std::vector<Matrix3> out;
+  std::vector<Pose> out;
   for (const Matrix3& R : candidates) {
     const auto same = [&](const Matrix3& S) { return RotationError(model.symmetries, R, S) < 0.2; };
-    if (!same(Matrix3::Identity()) && std::none_of(out.begin(), out.end(), same)) out.push_back(R);
+    if (same(Matrix3::Identity())) continue;
+    if (std::any_of(out.begin(), out.end(), [&](const Pose& X) { return same(X.linear()); })) continue;
+    out.push_back(MakePose(R, model.principal_centre - R * model.principal_centre));
   }
   return out;
 }
 
 /// Rotations that bring each stable face of the convex hull down onto z = 0.
-std::vector<Matrix3> FindRestingRotations(const PartModel& model) {
-  open3d::geometry::TriangleMesh in;
-  in.vertices_ = model.mesh.vertices;
-  for (const auto& t : model.mesh.triangles) in.triangles_.emplace_back(t[0], t[1], t[2]);
-  const auto hull = std::get<0>(open3d::geometry::Qhull::ComputeConvexHull(in.vertices_));
-  Vector3 centre = Vector3::Zero();
-  for (const SurfacePoint& s : model.surface) centre += s.p / model.surface.size();
-  struct Face {
-    Vector3 normal;
-    double area;
-  };
-  std::vector<Face> faces;
-  for (size_t t = 0; t < hull->triangles_.size(); ++t) {
-    const Eigen::Vector3i c = hull->triangles_[t];
-    const Vector3 cross =
-        (hull->vertices_[c[1]] - hull->vertices_[c[0]]).cross(hull->vertices_[c[2]] - hull->vertices_[c[0]]);
-    const double area = cross.norm() / 2;
-    if (!(area > 0)) continue;
-    Vector3 n = cross.normalized();
-    if (n.dot(hull->vertices_[c[0]] - centre) < 0) n = -n;
-    const auto same = std::find_if(faces.begin(), faces.end(), [&](const Face& f) { return f.normal.dot(n) > 0.995; });
-    if (same == faces.end()) {
-      faces.push_back({n, area});
-    } else {
-      same->area += area;
-    }
-  }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.area > b.area; });
+std::vector<Matrix3> FindRestingRotations(const PartModel& model, std::vector<HullFace> faces) {
   if (faces.size() > 10) faces.resize(10);
   std::vector<Matrix3> out;
-  for (const Face& f : faces) {
+  for (const HullFace& f : faces) {
     if (f.area < 0.05 * faces[0].area) break;
     const Matrix3 down = Eigen::Quaterniond::FromTwoVectors(f.normal, -Vector3::UnitZ()).toRotationMatrix();
     constexpr int kTurns = 16;
@@ -159,10 +195,11 @@ PartModel MakePartModel(const PartType& type, const PartModelOptions& options) {
   for (size_t t = 0; t < model.mesh.triangles.size(); ++t) model.normals.push_back(model.mesh.Normal(t));
   model.edges = FindEdges(model.mesh, model.normals);
   model.surface = SampleSurface(model.mesh, options.surface_points);
-  FindPrincipalAxes(model);
+  const std::vector<HullFace> faces = FindHullFaces(model);
+  FindPrincipalBox(faces, model);
   model.near_symmetries = FindNearSymmetries(model);
   model.orientations = CoverOfRotations(options.orientation_step, model.symmetries);
-  model.resting = FindRestingRotations(model);
+  model.resting = FindRestingRotations(model, faces);
   return model;
 }
 

@@ -25,11 +25,13 @@ struct PartModel {
   std::vector<SurfacePoint> surface;  ///< evenly spread
   MeshExtent extent;
   SymmetryGroup symmetries;
-  Vector3 principal_half = Vector3::Zero();      ///< half lengths along the axes of inertia, longest first
-  Matrix3 principal_axes = Matrix3::Identity();  ///< columns, same order
-  /// Rotations (not symmetries) that map the part nearly onto itself: half and quarter turns about the principal axes
-  /// under which the bounding box stays put. A tracker that slipped into one of them sees almost the same image.
-  std::vector<Matrix3> near_symmetries;
+  Vector3 principal_half = Vector3::Zero();    ///< half lengths along the principal axes, longest first
+  Vector3 principal_centre = Vector3::Zero();  ///< middle of that box
+  Matrix3 principal_axes =
+      Matrix3::Identity();  ///< columns, same order: of inertia, or where those are ambiguous normals
+  /// Motions (not symmetries) that map the part nearly onto itself: half and quarter turns about the principal axes
+  /// under which the principal box stays put. A tracker that slipped into one of them sees almost the same image.
+  std::vector<Pose> near_symmetries;
   /// Rotations covering SO(3) modulo the symmetries.
   std::vector<Matrix3> orientations;
   /// Rotations R_TP in which the part rests on the table on a face of its convex hull, about 12 turns each.

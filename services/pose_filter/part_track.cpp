@@ -22,7 +22,7 @@ double VisibleFraction(const PoseCandidate& c) {
 void Describe(const PoseCandidate& candidate, Track& track) {
   track.visible_fraction = VisibleFraction(candidate);
   track.confidence = Confidence(candidate.score);
-  track.pixels = candidate.score.inlier * OwnerMap::kStep * OwnerMap::kStep;
+  track.pixels = candidate.pixels;
 }
 
 constexpr double kLongestPrediction = 0.2;  // s; hands don't keep their way for longer
@@ -93,7 +93,6 @@ void Restart(const PoseCandidate& candidate, const Pose& X_TC, Track& track) {
   track.covariance =
       (RotateCovariance(X_TC.linear(), candidate.evidence.information) + Matrix6::Identity() * 1e-3).inverse();
   track.covariance_free = track.covariance;
-  track.moving = true;
   Describe(candidate, track);
 }
 

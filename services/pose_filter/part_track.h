@@ -36,7 +36,8 @@ struct Track {
   int pixels = 0;            ///< px of the last fit
   std::vector<float> rival;  ///< how long and how much each near symmetry has been better; 0: never
   int next_rival = 0;
-  double seen_for = 0;  ///< s without a break
+  double seen_for = 0;    ///< s without a break
+  bool by_depth = false;  ///< its colour is not to be relied on: found and followed by depth alone
   bool moving = false;
   double moving_for = 0;           ///< s since it was last seen to move; 0: moves now
   double hidden_for = 0;           ///< s without an update

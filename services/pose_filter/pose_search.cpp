@@ -63,8 +63,10 @@ PoseCandidate Polish(const PartModel& model, const Observation& observation, con
   const RefinementResult refined = Refine(model, observation, owners, part, class_bit, X_CP, options, scratch);
   c.X_CP = refined.X_CP;
   c.evidence = refined.last;
-  RenderTile(model, observation.camera, c.X_CP, OwnerMap::kStep, 0, scratch.tile);
+  const int step = SampleStep(model, observation.camera, c.X_CP, OwnerMap::kStep);
+  RenderTile(model, observation.camera, c.X_CP, step, 0, scratch.tile);
   c.score = ScoreTile(scratch.tile, observation, owners, part, class_bit);
+  c.pixels = c.score.inlier * step * step;
   const double in_image = InImageFraction(model, observation.camera, c.X_CP);
   c.full_samples = in_image > 0.02 ? scratch.tile.covered / in_image : 0;
   return c;
@@ -137,11 +139,8 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
   for (size_t i = 0; i < bases; ++i)
     found.push_back(Polish(model, observation, owners, part, class_bit, found[i].X_CP, full, scratch));
   const Pose best_pose = std::min_element(found.begin(), found.end(), likelier)->X_CP;
-  for (const Matrix3& S : model.near_symmetries) {
-    Pose X = best_pose;
-    X.linear() = best_pose.linear() * S;
-    found.push_back(Polish(model, observation, owners, part, class_bit, X, full, scratch));
-  }
+  for (const Pose& S : model.near_symmetries)
+    found.push_back(Polish(model, observation, owners, part, class_bit, best_pose * S, full, scratch));
   PoseCandidate best = *std::min_element(found.begin(), found.end(), likelier);
   if (former_X_CP) {
     const auto turned = [&](const PoseCandidate& c) {
@@ -152,6 +151,14 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
       if (c.score.log_likelihood > enough && turned(c) < turned(best)) best = c;
     }
   }
+  if (getenv("DBG"))
+    fprintf(stderr,
+            "search part %d blob class %d cells %d at %.0f %.0f: ll %.0f agr %.2f open %.2f outline %.2f (%d/%d) chi2 "
+            "%.2f inl %d see %d wrong %d none %d\n",
+            part, blob.colour_class, blob.cells, blob.centre.x(), blob.centre.y(), best.score.log_likelihood,
+            best.score.agreement(), best.score.open() / best.full_samples, best.outline_support(),
+            best.evidence.contour_used, best.evidence.contour_judged, best.evidence.depth_chi2, best.score.inlier,
+            best.score.see_through, best.score.wrong_colour, best.score.no_reading);
   if (!Acceptable(best, options)) return std::nullopt;
   return best;
 }

@@ -26,6 +26,7 @@ struct PoseCandidate {
   Pose X_CP = Pose::Identity();
   Score score;
   PoseEquations evidence;
+  int pixels = 0;           ///< px that agree with the pose
   double full_samples = 0;  ///< samples that the silhouette would have if nothing hid or cut it
 
   /// Share of the outline, where it can be judged, at which the image has the step that the pose predicts; 1 without

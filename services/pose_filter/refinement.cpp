@@ -268,7 +268,8 @@ void FindOutline(const PartModel& model, const CameraModel& camera, const Pose& 
 
 bool FindEvidence(const PartModel& model, const Observation& observation, const Pose& X_CP,
                   const RefinementOptions& options, RefinementScratch& scratch) {
-  RenderTile(model, observation.camera, X_CP, OwnerMap::kStep, 6, scratch.tile);
+  RenderTile(model, observation.camera, X_CP, SampleStep(model, observation.camera, X_CP, OwnerMap::kStep), 6,
+             scratch.tile);
   if (scratch.tile.covered == 0) return false;
   if (observation.depth)
     FindVisible(model, observation.camera, X_CP, scratch.tile, options.depth_points, scratch.visible);

@@ -130,7 +130,9 @@ Score ScoreBody(const RigidBody& body, const Observation& observation, const Own
                 RefinementScratch& scratch) {
   Score sum;
   for (const RigidMember& m : body) {
-    RenderTile(*m.model, observation.camera, X_CG * m.X_GP, OwnerMap::kStep, 0, scratch.tile);
+    const Pose X_CP = X_CG * m.X_GP;
+    RenderTile(*m.model, observation.camera, X_CP, SampleStep(*m.model, observation.camera, X_CP, OwnerMap::kStep), 0,
+               scratch.tile);
     sum += ScoreTile(scratch.tile, observation, owners, m.part, m.class_bit);
   }
   return sum;

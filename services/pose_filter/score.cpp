@@ -1,5 +1,7 @@
 #include "services/pose_filter/score.h"
 
+#include <algorithm>
+
 namespace coach {
 
 double Score::agreement() const { return open() > 0 ? static_cast<double>(inlier + no_reading) / open() : 0; }
@@ -58,6 +60,13 @@ Score ScoreTile(const DepthTile& tile, const Observation& observation, const Own
   }
   score.log_likelihood = sum * tile.step * tile.step;
   return score;
+}
+
+double ShareOfClass(const std::vector<Eigen::Vector2i>& pixels, const Observation& observation, uint8_t class_bit) {
+  const auto own = std::count_if(pixels.begin(), pixels.end(), [&](const Eigen::Vector2i& p) {
+    return (observation.Classes(p.x(), p.y()) & class_bit) != 0;
+  });
+  return pixels.empty() ? 0 : static_cast<double>(own) / static_cast<double>(pixels.size());
 }
 
 }  // namespace coach

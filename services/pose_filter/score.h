@@ -61,4 +61,7 @@ struct Score {
 Score ScoreTile(const DepthTile& tile, const Observation& observation, const OwnerMap& owners, int part,
                 uint8_t class_bit);
 
+/// Share of pixels that are in a class, 0..1.
+double ShareOfClass(const std::vector<Eigen::Vector2i>& pixels, const Observation& observation, uint8_t class_bit);
+
 }  // namespace coach

@@ -37,13 +37,13 @@ TEST(PartModel, NearSymmetriesOfBoxes) {
   EXPECT_EQ(BoxModel({0.12, 0.03, 0.03}).near_symmetries.size(), 7u);
   EXPECT_EQ(BoxModel({0.05, 0.05, 0.05}).near_symmetries.size(), 23u);
   for (const PartModel& model : {BoxModel({0.12, 0.05, 0.03}), BoxModel({0.12, 0.03, 0.03})}) {
-    for (const Matrix3& R : model.near_symmetries) {
-      EXPECT_GT(RotationError(model.symmetries, R, Matrix3::Identity()), 0.2);
-      EXPECT_NEAR(R.determinant(), 1, 1e-9);
+    for (const Pose& X : model.near_symmetries) {
+      EXPECT_GT(RotationError(model.symmetries, X.linear(), Matrix3::Identity()), 0.2);
+      EXPECT_NEAR(X.linear().determinant(), 1, 1e-9);
       // The box covers itself: corners come back within a few degrees of sampling error of the axes.
       const Vector3 half = (model.extent.high - model.extent.low) / 2;
       for (const Vector3& v : model.mesh.vertices) {
-        const Vector3 turned = (R * v).cwiseAbs();
+        const Vector3 turned = (X * v).cwiseAbs();
         EXPECT_LT((turned - half).cwiseAbs().maxCoeff(), 0.1 * half.norm());
       }
     }
