@@ -6,6 +6,8 @@
 
 namespace coach {
 
+constexpr double kNearJoint = 0.025;  // m, a radian counting as 5 cm
+
 ParallelFor SerialFor() {
   return [](int n, const std::function<void(int)>& body) {
     for (int i = 0; i < n; ++i) body(i);
@@ -289,11 +291,11 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   if (carried) {
     const Vector6 away = Difference(best.X_CP, expected);
     if (StepLength(away, 0.05) > 0.004) consider(expected);
+    DropEmptyLinks(part, observation);
   }
-  if (getenv("DBG"))
-    fprintf(stderr, "%ld part %d ll %.0f agr %.2f inl %d see %d wrong %d hid %d moving %d\n", steps_, part,
-            best.score.log_likelihood, best.score.agreement(), best.score.inlier, best.score.see_through,
-            best.score.wrong_colour, best.score.hidden, track.moving);
+  fprintf(stderr, "%ld part %d ll %.0f agr %.2f inl %d see %d wrong %d hid %d moving %d\n", steps_, part,
+          best.score.log_likelihood, best.score.agreement(), best.score.inlier, best.score.see_through,
+          best.score.wrong_colour, best.score.hidden, track.moving);
   TestRivals(part, observation, dt, carried ? &expected : nullptr, best);
   const double in_image = InImageFraction(shape.model, observation.camera, best.X_CP);
   const double open = best.full_samples > 0 ? best.score.open() / best.full_samples : 0;
@@ -420,7 +422,7 @@ void FullFilter::UpdateLinks(const FilterInput& input) {
       }
       if (!tracks_[link.part_a].missing() && !tracks_[link.part_b].missing()) {
         const Pose seen = tracks_[link.part_a].X_TP_free.inverse() * tracks_[link.part_b].X_TP_free;
-        double nearest = 0.025;  // m, a radian counting as 5 cm
+        double nearest = kNearJoint;
         for (const PairFinder::Candidate& joint : pairs_.CandidatesOf(link.part_a, link.part_b)) {
           const Vector6 e = Difference(joint.X_AB, seen);
           const double distance = e.head<3>().norm() + 0.05 * e.tail<3>().norm();
@@ -434,6 +436,20 @@ void FullFilter::UpdateLinks(const FilterInput& input) {
     }
   }
   links_ = std::move(links);
+}
+
+void FullFilter::DropEmptyLinks(int part, const Observation& observation) {
+  for (Link& link : links_) {
+    if (!link.known || (link.part_a != part && link.part_b != part)) continue;
+    const int partner = link.part_a == part ? link.part_b : link.part_a;
+    const Track& p = tracks_[partner];
+    if (!updated_[partner] || p.missing() || p.confidence < 0.5) continue;
+    if (StepLength(Difference(poses_before_[partner], p.X_TP), 0.05) > options_.link_rest) continue;
+    const Pose X_CP = camera_.X_TC().inverse() * p.X_TP * (link.part_a == part ? link.X_AB.inverse() : link.X_AB);
+    RenderTile(ShapeOf(part).model, observation.camera, X_CP, OwnerMap::kStep, 0, scratch_.tile);
+    const Score score = ScoreTile(scratch_.tile, observation, owners_, part, bit_of_part_[part]);
+    if (score.open() > 0.3 * score.covered && score.open() >= 20 && score.agreement() < 0.2) link.known = false;
+  }
 }
 
 bool FullFilter::Linked(int part, int other) const {

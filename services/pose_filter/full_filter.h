@@ -23,6 +23,7 @@ struct FullFilterOptions {
   double link_probability = 0.6;  ///< from here on a believed connection links two parts
   double link_position = 0.0015;  ///< m, play of a link
   double link_rotation = 0.015;   ///< rad
+  double link_rest = 0.01;        ///< m in a frame; a partner that moved farther says nothing of an empty place
   double link_reach = 0.015;      ///< m, from where a partner expects a part, that costs as much as a jump
   double link_turn = 0.2;         ///< rad
   /// Of the likelihood, for a pose one reach (3 cm and more) or turn (0.4 rad) from the expected one; grows with the
@@ -95,6 +96,9 @@ class FullFilter final : public PoseFilter {
   double CollisionCost(int part, const PoseCandidate& candidate) const;
   void UpdateLinks(const FilterInput& input);
   bool Linked(int part, int other) const;
+  /// Forgets how a part is linked where a partner at rest would have it and the image shows it is not, whatever the
+  /// reasoner still believes.
+  void DropEmptyLinks(int part, const Observation& observation);
   std::optional<Pose> CarriedBy(int part, Matrix6& covariance) const;
   /// The best seen first: they carry those that are linked to them.
   void OrderParts();

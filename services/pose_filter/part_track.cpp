@@ -43,7 +43,10 @@ Pose PredictPose(const Track& track, double dt) {
 void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const TrackOptions& options, Track& track) {
   const Pose measured = X_TC * candidate.X_CP;
   const Matrix6 information = RotateCovariance(X_TC.linear(), candidate.evidence.information);
-  const Matrix6 noise = (information + Matrix6::Identity() * 1e-3).inverse();
+  // A small piece seen past a hand is more often another's edge than the noise of its pixels says.
+  const double visible = VisibleFraction(candidate);
+  const double caution = 1 + options.small_piece * options.small_piece / (visible * visible + 1e-3);
+  const Matrix6 noise = caution * (information + Matrix6::Identity() * 1e-3).inverse();
   const Pose before = track.X_TP;
   // Does the pose say that the part moves? Judged against a part at rest.
   const Vector6 shift = Difference(before, measured);
@@ -120,7 +123,9 @@ void Coast(PartStatus status, double dt, const TrackOptions& options, Track& tra
 }
 
 void Settle(const Pose& X_TP_before, double dt, const TrackOptions& options, Track& track) {
-  const bool jumped = (track.X_TP.translation() - X_TP_before.translation()).norm() > options.jump;
+  const double moved = (track.X_TP.translation() - X_TP_before.translation()).norm();
+  track.calm_for = moved > options.hasty ? 0 : track.calm_for + dt;
+  const bool jumped = moved > options.jump;
   track.settled_for = jumped || track.missing() ? 0 : track.settled_for + dt;
   if (track.settled_for > options.settle_time) track.anchor = track.X_TP;
 }
@@ -131,7 +136,9 @@ PartEstimate Publish(const Track& track, const TrackOptions& options) {
   out.velocity = track.velocity;
   out.covariance = track.covariance + Diagonal(options.floor_position, options.floor_rotation);
   out.visible_fraction = track.visible_fraction;
-  out.status = track.status;
+  const bool doubtful =
+      track.bad > 0 || (track.calm_for < options.calm_time && track.confidence < options.hasty_confidence);
+  out.status = track.status == PartStatus::kTracked && doubtful ? PartStatus::kOccluded : track.status;
   out.confidence = track.confidence;
   out.identity_exchange = track.exchanged_with;
   return out;

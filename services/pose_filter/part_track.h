@@ -13,15 +13,19 @@ struct TrackOptions {
   double moving_rotation = 2.0;    ///< rad/s
   double moving_threshold =
       22;  ///< squared Mahalanobis distance (6 degrees of freedom) of a pose that says the part moves
-  double floor_position = 0.0010;  ///< m, standard deviation added to what is published
+  double floor_position = 0.0008;  ///< m, standard deviation added to what is published
   double floor_rotation = 0.010;   ///< rad
   double hidden_growth = 0.008;    ///< m per sqrt(s): a part at rest that nothing seems to touch
   double carried_growth = 0.10;    ///< m per s: a part that was moving when it was hidden
+  double small_piece = 0.17;       ///< visible share at which the variance of a fit is doubled
   double least_open = 0.12;        ///< share of the silhouette that must be open for an update
   double least_agreement = 0.45;   ///< Score::agreement below which the pose is not believed
   double jump = 0.05;              ///< m in one frame: the part may have been taken for another
   double settle_time = 1.0;        ///< s without a jump after which an identity is beyond doubt
   int bad_frames = 2;              ///< in a row until the part is lost
+  double hasty = 0.02;             ///< m in one frame: farther than a refinement follows surely
+  double calm_time = 0.2;          ///< s without that, after which a fit is trusted again
+  double hasty_confidence = 0.75;  ///< of a fit that is trusted all the same
 };
 
 struct Track {
@@ -44,6 +48,7 @@ struct Track {
   bool carried = false;            ///< it moved, or a hand touched it, when it was hidden
   int bad = 0;                     ///< frames in a row in which the image contradicts the pose
   Pose anchor = Pose::Identity();  ///< table frame; where the part was when its identity was last beyond doubt
+  double calm_for = 1;             ///< s since it last moved far between two frames
   double settled_for = 0;          ///< s since it last jumped, was lost or was hidden
   int exchanged_with = -1;         ///< equal part it exchanged its identity with in this frame
 
@@ -68,10 +73,10 @@ void Restart(const PoseCandidate& candidate, const Pose& X_TC, Track& track);
 /// A step without evidence: the pose stays, the covariance grows.
 void Coast(PartStatus status, double dt, const TrackOptions& options, Track& track);
 
-/// Keeps book of jumps: X_TP_before is the pose of the frame before.
+/// Keeps book of fast moves and jumps: X_TP_before is the pose of the frame before.
 void Settle(const Pose& X_TP_before, double dt, const TrackOptions& options, Track& track);
 
-/// What the track publishes.
+/// What the track publishes. A fit that the image contradicts, or a poor one in fast motion, is not called tracked.
 PartEstimate Publish(const Track& track, const TrackOptions& options);
 
 }  // namespace coach
