@@ -578,7 +578,8 @@ void FullFilter::FindOnTable(const Observation& observation) {
       const auto found =
           SearchPose(ShapeOf(part).model, ShapeOf(part).search_points, by_depth ? depth_only_ : observation, owners_,
                      part, bit_of_part_[k], blobs[b], camera_.X_TC(), options_.surface_search, nullptr, scratch_);
-      if (!found || !Plausible(part, *found, false)) continue;
+      if (!found || found->score.log_likelihood <= options_.relocation_gain || !Plausible(part, *found, false))
+        continue;
       if (by_depth && (found->score.agreement() < options_.depth_agreement)) continue;
       if (best && found->score.log_likelihood <= best->score.log_likelihood) continue;
       best = found;
