@@ -314,9 +314,10 @@ std::string Versions(const Report& report) {
 
 std::string Meaning(const Report& report) {
   return "<section id=\"meaning\"><h2>What the figures mean</h2><div class=\"card\">\n"
-         "<p>A <b>trial</b> runs from the start of a task until it is complete, begun anew, another one is chosen, or "
-         "the log "
-         "ends. <b>True</b> events are those an observer noted.</p>\n"
+         "<p>A <b>trial</b> runs from the start of a task until it is first complete, begun anew, another one is "
+         "chosen, "
+         "or the log ends; what is taken apart afterwards does not count. <b>True</b> events are those an observer "
+         "noted; if one comes after a completion that was announced too early, the trial is counted to there.</p>\n"
          "<p>An announced event is <b>matched</b> to a true one of the same kind and of the same two types of parts "
          "(equal "
          "parts may stand for each other), one to one, smallest time difference first, within 20 s. What has no match "

@@ -21,7 +21,7 @@ class Drawing {
  public:
   Drawing(const Trial& trial, const Session& session)
       : trial_(trial), session_(session), names_(NamesOf(session, trial.span.task)), begin_(trial.span.begin) {
-    end_ = trial.span.end;
+    end_ = std::max(trial.span.end, trial.until);
     if (trial.span.completed) end_ = std::max(end_, std::min(session.end, end_ + kAfter));
     if (end_ <= begin_) end_ = begin_ + 1000000;
   }

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int64_t kWindow = 20000000;    // us between a true event and its detection
 constexpr int64_t kLastWords = 8000000;  // us after completion in which what is said belongs to the trial
+constexpr int64_t kNotedLate = 1000000;  // us after the last connection that its announcement may take
 constexpr float kSeen = 0.3F;            // visible fraction from which on a part can be judged
 
 bool Refused(const GuidanceEvent& e) { return e.reason.starts_with("refused: "); }
@@ -26,12 +27,13 @@ class TrialFinder {
     } else if ((e.kind == "phase" || e.kind == "say") && e.subject == "introduction") {
       Begin(e.utime);
     } else if (e.kind == "phase" && e.subject == "complete") {
-      if (!open_) Open(e.utime);
+      if (trials_.empty()) Open(e.utime);
+      if (!open_) return;  // taken apart and put together again
       trials_.back().end = e.utime;
       trials_.back().completed = true;
       open_ = false;
     } else if (e.kind == "phase") {
-      if (!open_) Open(e.utime);
+      if (trials_.empty()) Open(e.utime);  // the log begins in the middle of a lesson
       fresh_ = false;
     }
     if (open_) trials_.back().end = std::max(trials_.back().end, e.utime);
@@ -131,6 +133,16 @@ int64_t FirstSight(const Session& session, int64_t from, const GuidanceEvent& e)
   return from;
 }
 
+/// The end of what counts: a lesson that was called complete too early goes on until the observer's last connection.
+int64_t Until(const Session& session, const TrialSpan& span, int64_t next) {
+  int64_t until = span.end;
+  for (const Annotation& a : session.annotations) {
+    const bool counts = a.kind == "connect" || a.kind == "wrong";
+    if (span.completed && counts && a.utime > span.end && a.utime < next) until = std::max(until, a.utime + kNotedLate);
+  }
+  return std::min(until, next);
+}
+
 void Match(const Session& session, Trial& trial) {
   const JointClasses classes(session, NamesOf(session, trial.span.task));
   struct Pair {
@@ -192,16 +204,15 @@ std::vector<Trial> Trials(const Session& session) {
     trial.number = static_cast<int>(i) + 1;
     trial.span = spans[i];
     const int64_t next = i + 1 < spans.size() ? spans[i + 1].begin : INT64_MAX;
-    const int64_t margin = trial.span.completed ? 1000000 : 0;  // the last joint may be noted a little late
+    trial.until = Until(session, trial.span, next);
     for (const Annotation& a : session.annotations) {
       if (!IsJoint(a.kind)) continue;
       trial.annotated = true;
-      if (a.utime >= trial.span.begin && a.utime < std::min(next, trial.span.end + margin))
-        trial.truth.push_back({a, std::nullopt, 0, 0});
+      if (a.utime >= trial.span.begin && a.utime <= trial.until) trial.truth.push_back({a, std::nullopt, 0, 0});
     }
     for (const GuidanceEvent& e : session.events) {
       const bool last_words = trial.span.completed && e.kind == "say" && e.utime <= trial.span.end + kLastWords;
-      if (e.utime < trial.span.begin || (e.utime > trial.span.end && !last_words) || e.utime >= next) continue;
+      if (e.utime < trial.span.begin || (e.utime > trial.until && !last_words) || e.utime >= next) continue;
       trial.events.push_back(e);
       if (IsJoint(e.kind)) trial.detected.push_back({e, std::nullopt});
     }

@@ -9,7 +9,8 @@
 
 namespace coach {
 
-/// From the moment a task is begun until it is complete, begun anew, another one chosen, or the log ends.
+/// From the moment a task is begun until it is first complete, begun anew, another one chosen, or the log ends. What is
+/// taken apart afterwards belongs to no trial.
 struct TrialSpan {
   std::string task;  ///< empty: unknown
   int64_t begin = 0, end = 0;
@@ -41,6 +42,8 @@ struct Trial {
   std::string session;
   int number = 0;  ///< in its session, from 1
   TrialSpan span;
+  int64_t until =
+      0;  ///< us, end of what counts: the span's, or later true connections if it was called complete before
   bool annotated = false;
   std::vector<TrueEvent> truth;         ///< connect, wrong, disconnect
   std::vector<DetectedEvent> detected;  ///< connect, wrong, disconnect

@@ -149,6 +149,32 @@ TEST_F(TrialsTest, ADelayBeginsWhenBothPartsCanBeSeen) {
   EXPECT_NEAR(FiguresOf(trial, session_).tracked_share, 1 - 15.0 / 120, 1e-9);
 }
 
+TEST_F(TrialsTest, TakenApartAndPutTogetherAgainIsNoNewTrial) {
+  Event(0, "phase", "announce");
+  Event(10, "phase", "complete");
+  Event(14, "disconnect", "corner_1", 0, 2);
+  Event(14, "phase", "wait");
+  Event(18, "connect", "corner_1", 0, 2);
+  Event(18, "phase", "complete");
+  EXPECT_THAT(Spans(), ElementsAre("0-10!"));
+  EXPECT_TRUE(Trials(session_).at(0).detected.empty());
+}
+
+TEST_F(TrialsTest, WhatWasCalledCompleteTooEarlyIsCountedToItsTrueEnd) {
+  Event(0, "phase", "announce");
+  Event(10, "connect", "corner_1", 0, 2);
+  Event(10, "phase", "complete");
+  Event(29, "connect", "corner_2", 1, 3);
+  Event(40, "connect", "corner_2", 1, 3);
+  Truth(9, "connect", "corner_1");
+  Truth(28, "connect", "corner_2");
+  Truth(36, "disconnect", "corner_2");
+  const auto trial = Trials(session_).at(0);
+  EXPECT_EQ(trial.truth.size(), 2u);
+  EXPECT_EQ(trial.detected.size(), 2u);
+  EXPECT_EQ(trial.seconds(), 10);
+}
+
 TEST_F(TrialsTest, LastWordsBelongToTheTrialWhatIsTakenApartDoesNot) {
   Event(0, "phase", "announce");
   Event(10, "phase", "complete");
