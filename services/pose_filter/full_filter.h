@@ -19,7 +19,7 @@ namespace coach {
 struct FullFilterOptions {
   int particles = 200;            ///< a part
   int particle_points = 40;       ///< surface points a particle is scored on
-  int searches = 2;               ///< searches from nothing a frame, at most (all of them in the first frames)
+  int searches = 1;               ///< searches from nothing a frame, at most (all of them in the first frames)
   double link_probability = 0.6;  ///< from here on a believed connection links two parts
   double link_position = 0.0015;  ///< m, play of a link
   double link_rotation = 0.015;   ///< rad
