@@ -272,17 +272,8 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   };
   const auto consider = [&](const Pose& X_CP) {
     const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit, X_CP, options_.refinement, scratch_);
-    fprintf(stderr, "%ld   consider ll %.0f agr %.2f post %.0f coll %.0f dexp %.3f %.2f\n", steps_,
-            c.score.log_likelihood, c.score.agreement(), posterior(c), CollisionCost(part, c),
-            Difference(expected, c.X_CP).head<3>().norm(), Difference(expected, c.X_CP).tail<3>().norm());
     if (posterior(c) > posterior(best)) best = c;
   };
-  fprintf(stderr,
-          "%ld part %d followed %d carried %d first ll %.0f agr %.2f post %.0f coll %.0f dexp %.3f %.2f open %.2f\n",
-          steps_, part, followed_[part].has_value(), carried.has_value(), best.score.log_likelihood,
-          best.score.agreement(), posterior(best), CollisionCost(part, best),
-          Difference(expected, best.X_CP).head<3>().norm(), Difference(expected, best.X_CP).tail<3>().norm(),
-          best.score.open() / best.full_samples);
   const Pose first = best.X_CP;
   if (const auto particle = BestParticle(part, observation, predicted, track.X_TP, best.X_CP, dt)) consider(*particle);
   const Pose rest = X_CT * track.X_TP;
@@ -293,9 +284,6 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
     if (StepLength(away, 0.05) > 0.004) consider(expected);
     DropEmptyLinks(part, observation);
   }
-  fprintf(stderr, "%ld part %d ll %.0f agr %.2f inl %d see %d wrong %d hid %d moving %d\n", steps_, part,
-          best.score.log_likelihood, best.score.agreement(), best.score.inlier, best.score.see_through,
-          best.score.wrong_colour, best.score.hidden, track.moving);
   TestRivals(part, observation, dt, carried ? &expected : nullptr, best);
   const double in_image = InImageFraction(shape.model, observation.camera, best.X_CP);
   const double open = best.full_samples > 0 ? best.score.open() / best.full_samples : 0;

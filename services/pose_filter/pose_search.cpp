@@ -151,13 +151,6 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
       if (c.score.log_likelihood > enough && turned(c) < turned(best)) best = c;
     }
   }
-  fprintf(stderr,
-          "search part %d blob class %d cells %d at %.0f %.0f: ll %.0f agr %.2f open %.2f outline %.2f (%d/%d) chi2 "
-          "%.2f inl %d see %d wrong %d none %d\n",
-          part, blob.colour_class, blob.cells, blob.centre.x(), blob.centre.y(), best.score.log_likelihood,
-          best.score.agreement(), best.score.open() / best.full_samples, best.outline_support(),
-          best.evidence.contour_used, best.evidence.contour_judged, best.evidence.depth_chi2, best.score.inlier,
-          best.score.see_through, best.score.wrong_colour, best.score.no_reading);
   if (!Acceptable(best, options)) return std::nullopt;
   return best;
 }
