@@ -12,7 +12,6 @@ namespace {
 struct ColourPoint {
   Vector3 p_C;
   uint8_t class_bit;
-  int part;
 };
 
 /// Visible points of the body at a pose, evenly over its members.
@@ -23,7 +22,7 @@ std::vector<ColourPoint> VisibleColour(const RigidBody& body, const Pose& X_CG, 
     for (size_t i = 0; i < m.points->size(); ++i) {
       const Vector3 p = X_CP * Vector3(m.points->x[i], m.points->y[i], m.points->z[i]);
       const Vector3 n = X_CP.linear() * Vector3(m.points->nx[i], m.points->ny[i], m.points->nz[i]);
-      if (-n.dot(p) > 0.2 * p.norm()) facing.push_back({p, m.class_bit, m.part});
+      if (-n.dot(p) > 0.2 * p.norm()) facing.push_back({p, m.class_bit});
     }
   }
   std::vector<ColourPoint> out;
@@ -39,16 +38,43 @@ struct Proposal {
   double du = 0, dv = 0;
 };
 
-/// What the pixel under a shifted point says of the colour alone.
-double ColourMatch(const ColourPoint& point, int x, int y, double depth, const Observation& o, const OwnerMap& owners) {
-  if (!o.Inside(x, y)) return 0;
-  const double z = o.Depth(x, y);
-  if (o.Classes(x, y) & point.class_bit) {
-    const double other = owners.OtherDepth(x, y, point.part);
-    return other > 0 && (z == 0 || std::abs(z - other) < 0.02) ? 0 : 1;
+/// What the image around a body says of its colours, looked up many times: for each cell of a window and each class
+/// bit of the body 1 (the class), 0 (something in front, or another part) or a penalty.
+class ColourMap {
+ public:
+  static constexpr int kStep = 4;  // px
+
+  ColourMap(const Observation& o, const OwnerMap& owners, const cv::Rect& window, double depth,
+            const std::vector<uint8_t>& bits)
+      : x0_(window.x), y0_(window.y), width_(window.width / kStep + 1), height_(window.height / kStep + 1) {
+    cells_.assign(bits.size() * static_cast<size_t>(width_) * static_cast<size_t>(height_), 0);
+    for (size_t b = 0; b < bits.size(); ++b) {
+      float* cell = &cells_[b * static_cast<size_t>(width_) * static_cast<size_t>(height_)];
+      for (int j = 0; j < height_; ++j) {
+        for (int i = 0; i < width_; ++i) *cell++ = Value(o, owners, x0_ + i * kStep, y0_ + j * kStep, depth, bits[b]);
+      }
+    }
   }
-  return z > 0 && z < depth - 0.05 ? 0 : -0.7;
-}
+  float At(size_t bit, double u, double v) const {
+    const int i = static_cast<int>(u - x0_) / kStep, j = static_cast<int>(v - y0_) / kStep;
+    if (u < x0_ || v < y0_ || i >= width_ || j >= height_) return 0;
+    return cells_[(bit * static_cast<size_t>(height_) + static_cast<size_t>(j)) * static_cast<size_t>(width_) +
+                  static_cast<size_t>(i)];
+  }
+
+ private:
+  static float Value(const Observation& o, const OwnerMap& owners, int x, int y, double depth, uint8_t bit) {
+    if (!o.Inside(x, y)) return 0;
+    const double z = o.Depth(x, y);
+    if (o.Classes(x, y) & bit) {
+      const double other = owners.NearestDepth(x, y);
+      return other > 0 && (z == 0 || std::abs(z - other) < 0.02) ? 0.0f : 1.0f;
+    }
+    return z > 0 && z < depth - 0.05 ? 0.0f : -0.7f;
+  }
+  int x0_, y0_, width_, height_;
+  std::vector<float> cells_;
+};
 
 std::vector<Matrix3> Turns(const Vector3& ray, const Vector3& normal, const BodySearchOptions& options) {
   std::vector<Matrix3> out{Matrix3::Identity()};
@@ -97,6 +123,64 @@ float ScoreBodyPoints(const RigidBody& body, const Observation& o, const OwnerMa
   return sum;
 }
 
+/// Turns and shifts of the body under which its colours match the image, best first.
+std::vector<Proposal> ProposeByColour(const RigidBody& body, const std::vector<ColourPoint>& points,
+                                      const Vector3& middle, const Observation& o, const OwnerMap& owners,
+                                      const Vector3& normal_C, double dt, const BodySearchOptions& options) {
+  const double reach_px = (options.fastest * dt + options.slack) * o.camera.fx / middle.z();
+  const int reach = static_cast<int>(reach_px / options.shift_step);
+  std::vector<uint8_t> bits;
+  for (const RigidMember& m : body) {
+    if (std::find(bits.begin(), bits.end(), m.class_bit) == bits.end()) bits.push_back(m.class_bit);
+  }
+  // Every point under every turn, and the window that they can reach.
+  const std::vector<Matrix3> turns = Turns(middle.normalized(), normal_C, options);
+  struct Projected {
+    double u, v;
+    size_t bit;
+  };
+  std::vector<Projected> projected;
+  double u0 = 1e9, v0 = 1e9, u1 = -1e9, v1 = -1e9;
+  for (const Matrix3& turn : turns) {
+    for (const ColourPoint& point : points) {
+      const Vector3 p = middle + turn * (point.p_C - middle);
+      const double u = o.camera.fx * p.x() / p.z() + o.camera.cx, v = o.camera.fy * p.y() / p.z() + o.camera.cy;
+      projected.push_back(
+          {u, v, static_cast<size_t>(std::find(bits.begin(), bits.end(), point.class_bit) - bits.begin())});
+      u0 = std::min(u0, u);
+      v0 = std::min(v0, v);
+      u1 = std::max(u1, u);
+      v1 = std::max(v1, v);
+    }
+  }
+  const cv::Rect image(0, 0, o.camera.width, o.camera.height);
+  const cv::Rect window =
+      image &
+      cv::Rect(
+          cv::Point(static_cast<int>(std::max(-1e4, u0 - reach_px)), static_cast<int>(std::max(-1e4, v0 - reach_px))),
+          cv::Point(static_cast<int>(std::min(1e4, u1 + reach_px)), static_cast<int>(std::min(1e4, v1 + reach_px))));
+  if (window.empty()) return {};
+  const ColourMap map(o, owners, window, middle.z(), bits);
+  std::vector<Proposal> proposals;
+  for (size_t t = 0; t < turns.size(); ++t) {
+    const Projected* of_turn = &projected[t * points.size()];
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        if (i * i + j * j > reach * reach) continue;
+        Proposal proposal{0, turns[t], i * options.shift_step, j * options.shift_step};
+        for (size_t k = 0; k < points.size(); ++k)
+          proposal.matched += map.At(of_turn[k].bit, of_turn[k].u + proposal.du, of_turn[k].v + proposal.dv);
+        if (proposal.matched > 0.1 * static_cast<double>(points.size())) proposals.push_back(proposal);
+      }
+    }
+  }
+  const size_t kept = std::min<size_t>(proposals.size(), static_cast<size_t>(options.scored));
+  std::partial_sort(proposals.begin(), proposals.begin() + static_cast<long>(kept), proposals.end(),
+                    [](const Proposal& a, const Proposal& b) { return a.matched > b.matched; });
+  proposals.resize(kept);
+  return proposals;
+}
+
 }  // namespace
 
 Pose RefineBody(const RigidBody& body, const Observation& observation, const OwnerMap& owners, const Pose& start,
@@ -141,61 +225,36 @@ Score ScoreBody(const RigidBody& body, const Observation& observation, const Own
 std::optional<Pose> SearchBody(const RigidBody& body, const Observation& o, const OwnerMap& owners, const Pose& X_CG,
                                const Vector3& normal_C, double dt, const BodySearchOptions& options,
                                RefinementScratch& scratch) {
-  std::vector<Pose> starts{X_CG};
+  struct Ranked {
+    float score;
+    Pose X_CG;
+  };
+  std::vector<Ranked> ranked{{ScoreBodyPoints(body, o, owners, X_CG), X_CG}};
   const std::vector<ColourPoint> points = VisibleColour(body, X_CG, options.points);
   if (o.class_map && !points.empty()) {
     Vector3 middle = Vector3::Zero();
     for (const ColourPoint& p : points) middle += p.p_C / static_cast<double>(points.size());
-    const int reach =
-        static_cast<int>((options.fastest * dt + options.slack) * o.camera.fx / middle.z() / options.shift_step);
-    std::vector<Proposal> proposals;
-    std::vector<Eigen::Vector3d> projected(points.size());
-    for (const Matrix3& turn : Turns(middle.normalized(), normal_C, options)) {
-      for (size_t i = 0; i < points.size(); ++i) {
-        const Vector3 p = middle + turn * (points[i].p_C - middle);
-        projected[i] = {o.camera.fx * p.x() / p.z() + o.camera.cx, o.camera.fy * p.y() / p.z() + o.camera.cy, p.z()};
-      }
-      for (int j = -reach; j <= reach; ++j) {
-        for (int i = -reach; i <= reach; ++i) {
-          if (i * i + j * j > reach * reach) continue;
-          Proposal proposal{0, turn, i * options.shift_step, j * options.shift_step};
-          for (size_t k = 0; k < points.size(); ++k)
-            proposal.matched +=
-                ColourMatch(points[k], static_cast<int>(projected[k].x() + proposal.du),
-                            static_cast<int>(projected[k].y() + proposal.dv), projected[k].z(), o, owners);
-          if (proposal.matched > 0.1 * static_cast<double>(points.size())) proposals.push_back(proposal);
-        }
-      }
-    }
-    const size_t kept = std::min<size_t>(proposals.size(), static_cast<size_t>(options.scored));
-    std::partial_sort(proposals.begin(), proposals.begin() + static_cast<long>(kept), proposals.end(),
-                      [](const Proposal& a, const Proposal& b) { return a.matched > b.matched; });
-    struct Ranked {
-      float score;
-      Pose X_CG;
-    };
-    std::vector<Ranked> ranked;
-    std::vector<double> scratch_depths;
-    for (size_t k = 0; k < kept; ++k) {
-      if (const auto X = AtMeasuredDepth(proposals[k], points, middle, X_CG, o, scratch_depths))
+    std::vector<double> offsets;
+    for (const Proposal& proposal : ProposeByColour(body, points, middle, o, owners, normal_C, dt, options)) {
+      if (const auto X = AtMeasuredDepth(proposal, points, middle, X_CG, o, offsets))
         ranked.push_back({ScoreBodyPoints(body, o, owners, *X), *X});
     }
-    std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
-    for (const Ranked& r : ranked) {
-      if (static_cast<int>(starts.size()) > options.refined) break;
-      const bool known = std::any_of(starts.begin(), starts.end(),
-                                     [&](const Pose& X) { return StepLength(Difference(X, r.X_CG), 0.05) < 0.015; });
-      if (!known) starts.push_back(r.X_CG);
-    }
   }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
+  std::vector<Pose> tried;
   std::optional<Pose> best;
   double best_likelihood = 0;
-  for (const Pose& start : starts) {
-    const Pose X = RefineBody(body, o, owners, start, options.refinement, scratch);
+  for (const Ranked& start : ranked) {
+    if (static_cast<int>(tried.size()) >= options.refined) break;
+    const auto near = [&](const Pose& X) { return StepLength(Difference(X, start.X_CG), 0.05) < 0.015; };
+    if (std::any_of(tried.begin(), tried.end(), near)) continue;
+    tried.push_back(start.X_CG);
+    const Pose X = RefineBody(body, o, owners, start.X_CG, options.refinement, scratch);
     const Score score = ScoreBody(body, o, owners, X, scratch);
     if (score.agreement() < options.least_agreement || score.log_likelihood <= best_likelihood) continue;
     best_likelihood = score.log_likelihood;
     best = X;
+    if (score.agreement() > options.sure_agreement) break;
   }
   return best;
 }

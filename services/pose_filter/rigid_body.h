@@ -29,7 +29,8 @@ struct BodySearchOptions {
   double slack = 0.02;            ///< m, reach beyond what the speed allows
   int points = 48;                ///< of the body, looked at for a shift
   int scored = 24;                ///< best shifts that are scored with depth
-  int refined = 3;                ///< best of those that are refined
+  int refined = 4;                ///< best of those that are refined
+  double sure_agreement = 0.85;   ///< Score::agreement of a pose after which no other is tried
   double least_agreement = 0.45;  ///< Score::agreement of a pose that is believed
   RefinementOptions refinement{.first_half_length = 14, .first_gate = 0.05};
 };
