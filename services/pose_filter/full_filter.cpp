@@ -142,7 +142,7 @@ std::vector<RigidBody> FullFilter::Bodies() const {
 
 void FullFilter::FollowBodies(const Observation& observation, double dt) {
   followed_.assign(tracks_.size(), std::nullopt);
-  if (!observation.depth || !observation.class_map) return;
+  if (!options_.follow_bodies || !observation.depth || !observation.class_map) return;
   const auto at_prediction = [&](int part) {
     return ScoreTile(tiles_[part], ViewFor(part, observation), owners_, part, bit_of_part_[part]);
   };
@@ -195,7 +195,7 @@ void FullFilter::TrySuggestions(const Observation& observation) {
 
 void FullFilter::LocateCamera(const Observation& observation) {
   if (camera_.started()) {
-    camera_.Step(observation, owners_);
+    if (options_.follow_camera) camera_.Step(observation, owners_);
     return;
   }
   const auto table = FindTable(observation, seed_, options_.table);
@@ -376,7 +376,9 @@ void FullFilter::TestRivals(int part, const Observation& observation, double dt,
   const size_t n = shape.model.near_symmetries.size();
   track.rival.resize(n, 0.0f);
   track.seen_for = track.missing() ? 0 : track.seen_for + dt;
-  if (n == 0 || best.score.open() < options_.rival_open * best.full_samples || best.score.open() < 30) return;
+  if (n == 0 || !options_.test_rivals || best.score.open() < options_.rival_open * best.full_samples ||
+      best.score.open() < 30)
+    return;
   // In turn; more often while the part was seen for less than a second.
   const bool settled = track.seen_for > 1.0;
   if (settled && (steps_ + part) % 4 != 0) return;
@@ -550,7 +552,9 @@ void FullFilter::Recover(const Observation& observation) {
 }
 
 void FullFilter::FindOnTable(const Observation& observation) {
-  if (!observation.depth || !observation.class_map || steps_ % options_.surface_search_period != 0) return;
+  if (!observation.depth || !observation.class_map || options_.surface_search_period <= 0 ||
+      steps_ % options_.surface_search_period != 0)
+    return;
   for (size_t k = 0; k < tracks_.size(); ++k) {
     if (tracks_[k].status != PartStatus::kAbsent) continue;
     const int part = static_cast<int>(k);

@@ -17,10 +17,13 @@
 namespace coach {
 
 struct FullFilterOptions {
-  int particles = 200;            ///< a part
+  int particles = 200;            ///< a part; 0: none
   int particle_points = 40;       ///< surface points a particle is scored on
   int searches = 1;               ///< searches from nothing a frame, at most (all of them in the first frames)
-  double link_probability = 0.6;  ///< from here on a believed connection links two parts
+  bool follow_bodies = true;      ///< bodies that are not where they were predicted are looked for around there
+  bool test_rivals = true;        ///< poses that look almost the same are tried
+  bool follow_camera = true;      ///< the camera may move
+  double link_probability = 0.6;  ///< from here on a believed connection links two parts; above 1: none does
   double link_position = 0.0015;  ///< m, play of a link
   double link_rotation = 0.015;   ///< rad
   double link_rest = 0.01;        ///< m in a frame; a partner that moved farther says nothing of an empty place
@@ -39,7 +42,7 @@ struct FullFilterOptions {
   double least_jump_cost = 150;    ///< nats
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
-  int surface_search_period = 5;     ///< frames between two searches of things on the table
+  int surface_search_period = 5;     ///< frames between two searches of things on the table; 0: none
   double surface_own_colour = 0.35;  ///< share of a thing's pixels that must be in the part's class,
   double surface_good_colour = 0.7;  ///< from which on the part is followed by colour too
   double depth_agreement = 0.85;     ///< Score::agreement of a part that is found by depth alone

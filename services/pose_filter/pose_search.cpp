@@ -120,7 +120,7 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
   RefinementOptions quick;
   quick.iterations = 5;
   quick.depth_points = 130;
-  quick.contour_points = 60;
+  quick.contour_points = options.contour ? 60 : 0;
   std::vector<Pose> tried;
   for (const Ranked& r : ranked) {
     if (static_cast<int>(tried.size()) >= options.refined) break;
@@ -134,7 +134,8 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
   std::sort(found.begin(), found.end(), likelier);
   if (found.size() > static_cast<size_t>(options.polished)) found.resize(static_cast<size_t>(options.polished));
   if (found.empty()) return std::nullopt;
-  const RefinementOptions full;
+  RefinementOptions full;
+  if (!options.contour) full.contour_points = 0;
   const size_t bases = found.size();
   for (size_t i = 0; i < bases; ++i)
     found.push_back(Polish(model, observation, owners, part, class_bit, found[i].X_CP, full, scratch));

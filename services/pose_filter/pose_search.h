@@ -19,6 +19,7 @@ struct PoseSearchOptions {
   double almost_as_likely = 0.92;  ///< of the best log-likelihood: such poses are told apart by what was known before
   double least_outline = 0.72;     ///< PoseCandidate::outline_support of an accepted pose
   double largest_chi2 = 3.0;       ///< PoseEquations::depth_chi2 of an accepted pose
+  bool contour = true;             ///< the outline helps to refine
   double least_visible = 0.2;      ///< share of the silhouette that must be open
 };
 

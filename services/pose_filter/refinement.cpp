@@ -225,7 +225,7 @@ void AddContour(const Observation& observation, const OwnerMap& owners, int part
 void FindOutline(const PartModel& model, const CameraModel& camera, const Pose& X_CP, const DepthTile& tile, int points,
                  std::vector<RefinementScratch::OutlinePoint>& outline) {
   outline.clear();
-  if (tile.covered == 0) return;
+  if (tile.covered == 0 || points <= 0) return;
   const auto facing = [&](int t) {
     return (X_CP.linear() * model.normals[t]).dot(X_CP * model.mesh.vertices[model.mesh.triangles[t][0]]) < 0;
   };

@@ -15,7 +15,7 @@ namespace coach {
 struct RefinementOptions {
   int iterations = 4;
   int depth_points = 150;       ///< at most, of the visible surface
-  int contour_points = 80;      ///< at most, of the outline
+  int contour_points = 80;      ///< at most, of the outline; 0: it has no say
   int first_half_length = 9;    ///< px, search to either side of the outline in the first iteration
   int last_half_length = 5;     ///< px, in the last
   double first_gate = 0.030;    ///< m, depth residuals beyond are not this surface, first iteration
