@@ -20,7 +20,7 @@ constexpr int kOpenLabel = -1;
 constexpr int kUnknownLabel = -2;  ///< a rigid contact in no class
 
 struct AssemblyBeliefOptions {
-  double forgetting_time = 0.08;  ///< s, in which new evidence replaces old; 0: at once
+  double forgetting_time = 0.04;  ///< s, in which new evidence replaces old; 0: at once
   double price_connection = 0.7;  ///< nats against a connection of the task that is not yet decided
   double price_mistake = 1.0;     ///< nats, the same for a mistake
   double price_unknown = 4.0;     ///< nats, the same for an unknown contact

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 namespace coach {
 namespace {
 
-constexpr int64_t kLongestGap = 200000;   // us without evidence after which a decision has to mature anew
+constexpr int64_t kLongestGap = 300000;   // us without evidence after which a decision has to mature anew
 constexpr double kSamePlace = 0.003;      // m
 constexpr double kReportedBelief = 0.05;  // connections less probable than this are not told to the filter
 
@@ -47,10 +48,12 @@ struct AssemblyReasoner::Impl {
   };
   std::map<PairKey, Pending> pending;
   std::map<PairKey, int> pinned;  ///< labels that the operator set and evidence has not confirmed yet
+  HiddenParts hidden;
+  std::set<PairKey> unseen;  ///< pairs whose joint, if any, was only inferred
   int64_t last_utime = INT64_MIN;
 
   Impl(Task t, const AssemblyReasonerOptions& o)
-      : task(std::move(t)), options(o), contacts(task), belief(BeliefOptions(o)) {
+      : task(std::move(t)), options(o), contacts(task), belief(BeliefOptions(o)), hidden(o.hidden) {
     model = options.paper ? MakePaperConnectionModel(task, contacts)
                           : MakeCoachConnectionModel(task, contacts, options.model);
     placement = Place(task, {}, {}, 0);
@@ -65,6 +68,7 @@ struct AssemblyReasoner::Impl {
   }
 
   void Observe(const PartPoses& poses);
+  void Learn(const PairView& view);
   void ExchangeIdentities(const PartPoses& poses);
   std::map<PairKey, int> Implied() const;
   void DecideAll(int64_t now, std::vector<ConnectionEvent>& events);
@@ -80,19 +84,44 @@ struct AssemblyReasoner::Impl {
 
 void AssemblyReasoner::Impl::Observe(const PartPoses& poses) {
   std::map<PairKey, const PairEvidence*> given;
-  for (const PairEvidence& pair : poses.pairs) given[{pair.part_a, pair.part_b}] = &pair;
+  std::vector<bool> misfit(task.parts.size(), false);
+  for (const PairEvidence& pair : poses.pairs) {
+    given[{pair.part_a, pair.part_b}] = &pair;
+    if (pair.surface_distance < -options.deepest_overlap) misfit[pair.part_a] = misfit[pair.part_b] = true;
+  }
+  const std::vector<PairEvidence> inferred = options.paper ? std::vector<PairEvidence>{} : hidden.Infer(poses);
+  for (const PairEvidence& pair : inferred) given.try_emplace({pair.part_a, pair.part_b}, &pair);
   const int n = static_cast<int>(task.parts.size());
   for (int a = 0; a < n; ++a) {
     for (int b = a + 1; b < n; ++b) {
       const auto& classes = Classes({a, b});
       const auto found = given.find({a, b});
-      const PairEvidence* evidence = found == given.end() ? nullptr : found->second;
-      if (classes.empty() && evidence == nullptr) continue;
+      PairView view{poses.utime, a, b, &poses.parts[a], &poses.parts[b]};
+      view.evidence = found == given.end() ? nullptr : found->second;
+      if (classes.empty() && view.evidence == nullptr) continue;
+      view.inferred = !inferred.empty() && view.evidence >= &inferred.front() && view.evidence <= &inferred.back();
+      view.misfit = misfit[a] || misfit[b];
+      const auto joint = Find({a, b});
+      view.decided = joint == joints.end() ? kOpenLabel : joint->label;
       std::vector<bool> is_connection;
       for (const ContactClass& c : classes) is_connection.push_back(!c.connections.empty());
-      const PairVerdict verdict = model->Judge({poses.utime, a, b, &poses.parts[a], &poses.parts[b], evidence});
+      const PairVerdict verdict = model->Judge(view);
       belief.Observe({a, b}, verdict, is_connection, poses.utime);
+      if (verdict.has_evidence) Learn(view);
     }
+  }
+}
+
+/// Keeps where seen joints put their parts, and which joints are known by a partner only.
+void AssemblyReasoner::Impl::Learn(const PairView& view) {
+  const PairKey pair{view.part_a, view.part_b};
+  if (view.inferred) {
+    if (view.decided == kOpenLabel) unseen.insert(pair);
+    return;
+  }
+  unseen.erase(pair);
+  if (view.evidence != nullptr && view.decided >= 0) {
+    hidden.Seat(pair, Classes(pair)[view.decided], view.evidence->X_AB);
   }
 }
 
@@ -103,6 +132,8 @@ void AssemblyReasoner::Impl::ExchangeIdentities(const PartPoses& poses) {
     if (j <= k || j >= static_cast<int>(poses.parts.size()) || task.parts[j].type != task.parts[k].type) continue;
     model->Exchange(k, j);
     belief.Exchange(k, j);
+    hidden.Exchange(k, j);
+    unseen.clear();
     const auto other = [&](int p) { return p == k ? j : p == j ? k : p; };
     for (BelievedJoint& joint : joints) {
       const PairKey pair = std::minmax(other(joint.part_a), other(joint.part_b));
@@ -186,6 +217,7 @@ void AssemblyReasoner::Impl::Change(const PairKey& pair, int label, int64_t sinc
   if (old != joints.end()) {
     events.push_back(EventOf(*old, "disconnect", std::max(since, old->since), now));
     joints.erase(old);
+    hidden.Unseat(pair);
   }
   belief.Decide(pair, label);
   if (label != kOpenLabel) joints.push_back({pair.first, pair.second, label, -1, -1, since, now, false});
@@ -280,6 +312,7 @@ ConnectionBelief AssemblyReasoner::Impl::Belief(int64_t utime) const {
   ConnectionBelief out;
   out.utime = utime;
   for (const auto& [pair, state] : belief.pairs()) {
+    if (unseen.contains(pair)) continue;
     const auto& classes = Classes(pair);
     for (size_t k = 0; k < classes.size(); ++k) {
       const double p = belief.Probability(pair, static_cast<int>(k));

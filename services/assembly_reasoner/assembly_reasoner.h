@@ -17,6 +17,7 @@
 #include "common/assembly/task.h"
 #include "services/assembly_reasoner/assembly_belief.h"
 #include "services/assembly_reasoner/connection_model.h"
+#include "services/assembly_reasoner/hidden_parts.h"
 #include "services/assembly_reasoner/task_progress.h"
 
 namespace coach {
@@ -25,8 +26,10 @@ struct AssemblyReasonerOptions {
   bool paper = false;  ///< the paper's model [1]-[2] by itself: no memory, threshold one half, decided at once
   CoachConnectionModelOptions model;
   AssemblyBeliefOptions belief;
+  HiddenPartOptions hidden;
+  double deepest_overlap = 0.005;   ///< m that the measured surfaces of two parts may stand in each other
   double decide_probability = 0.9;  ///< of a new label
-  double decide_hold = 0.20;        ///< s it has to last
+  double decide_hold = 0.07;        ///< s it has to last
   double wrong_hold = 0.30;         ///< s, the same for a mistake
   double undo_hold = 0.22;          ///< s, the same for a connection coming apart
 };

@@ -18,9 +18,15 @@ struct Scale {
 };
 constexpr std::array<Scale, 5> kOpenScales{
     {{0.006, 0.02, 0.25}, {0.015, 0.03, 0.2}, {0.006, 0.2, 0.2}, {0.02, 0.2, 0.2}, {0.06, 1.0, 0.15}}};
-constexpr double kUsualRepeats = 0.4;      // share of repeated poses from which on they are normal
-constexpr double kSeatedPosition = 0.004;  // m, a single measurement this near to a joint's pose agrees with it
-constexpr double kSeatedAngle = 0.07;      // rad, the same
+constexpr double kUsualRepeats = 0.4;  // share of repeated poses from which on they are normal
+
+constexpr int64_t kLongestFrame = 150000;  // us between two measurements that follow each other
+constexpr int64_t kGlitch = 250000;        // us
+constexpr double kJitter = 0.010;          // m between two measurements of one place
+constexpr double kTwistJitter = 0.1;       // rad, the same
+constexpr double kOtherwise = 4;           // nats by which earlier measurements show that it was otherwise before
+constexpr double kClear = 0.3;             // Clarity of a measurement that dates a change
+constexpr double kSlowing = 1.3;           // hands slow down before parts meet
 
 double LogNormal(const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance) {
   const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
@@ -40,14 +46,17 @@ class CoachConnectionModel : public ConnectionModel {
       : task_(task), contacts_(contacts), options_(options) {}
 
   PairVerdict Judge(const PairView& view) override {
-    const double visible = std::min(view.a->visible_fraction, view.b->visible_fraction);
     const bool placed = IsPlaced(*view.a) && IsPlaced(*view.b);
+    const double visible = view.inferred ? Smaller(view.evidence->visible_fraction)
+                                         : std::min(view.a->visible_fraction, view.b->visible_fraction);
     if (!placed || visible < options_.smallest_visible) return {};
+    WatchForJumps(view);
     if (view.evidence == nullptr) return JudgeApart(view, visible);
-    if (Frozen(view.part_a, *view.a, view.utime) || Frozen(view.part_b, *view.b, view.utime)) return {};
+    const bool frozen = Frozen(view.part_a, *view.a, view.utime) || Frozen(view.part_b, *view.b, view.utime);
+    if (frozen && !view.inferred) return {};
     const PairEvidence& pair = *view.evidence;
     RelativePoseWindow& window = windows_[{view.part_a, view.part_b}];
-    window.Add({view.utime, pair.X_AB, pair.covariance, pair.motion[0], pair.motion[1]});
+    window.Add({view.utime, pair.X_AB, pair.covariance + Blur(view, visible), pair.motion[0], pair.motion[1], visible});
     const auto estimate = window.Estimate(view.utime);
     if (!estimate) return {};
     PairVerdict verdict;
@@ -56,14 +65,15 @@ class CoachConnectionModel : public ConnectionModel {
     const double weight = std::clamp(visible / options_.full_visible, 0.3, 1.0);
     double best = -1e9;
     for (const ContactClass& contact : classes) {
-      double odds = LogOdds(contact, *estimate);
+      double odds = LogOdds(contact, estimate->X_AB, estimate->covariance);
       if (odds > -4) odds += MovedTogether(*estimate) + ImageEvidence(contact, pair);
+      if (view.inferred) odds -= options_.inferred_price;
       odds = std::clamp(weight * odds, -options_.largest_log_odds, options_.largest_log_odds);
       verdict.log_odds.push_back(odds);
       best = std::max(best, odds);
     }
-    verdict.unknown = best < -4 ? UnknownContact(*estimate, pair) : -options_.largest_log_odds;
-    return verdict;
+    verdict.unknown = best < -4 && !view.misfit ? UnknownContact(*estimate, pair) : -options_.largest_log_odds;
+    return Credible(view, visible, verdict) ? verdict : PairVerdict{};
   }
 
   int64_t ChangeTime(int part_a, int part_b, int label, int former, int64_t now) const override {
@@ -71,7 +81,7 @@ class CoachConnectionModel : public ConnectionModel {
     const int contact = label >= 0 ? label : former;
     const auto& classes = Classes(part_a, part_b);
     if (found == windows_.end() || contact < 0 || contact >= static_cast<int>(classes.size())) return now;
-    return label >= 0 ? Arrival(found->second, classes[contact], now) : Departure(found->second, classes[contact], now);
+    return ChangePoint(found->second, classes[contact], label >= 0, now);
   }
 
   void Exchange(int i, int j) override {
@@ -86,6 +96,7 @@ class CoachConnectionModel : public ConnectionModel {
       exchanged.emplace(key, std::move(window));
     }
     windows_ = std::move(exchanged);
+    courses_.clear();
   }
 
  private:
@@ -118,6 +129,7 @@ class CoachConnectionModel : public ConnectionModel {
   PairVerdict JudgeApart(const PairView& view, double visible) const {
     PairVerdict verdict;
     if (visible < options_.apart_visible) return verdict;
+    if (view.decided >= 0 && (view.misfit || JumpedLately(view))) return verdict;
     const Pose X_AB = view.a->X_TP.inverse() * view.b->X_TP;
     for (const ContactClass& contact : Classes(view.part_a, view.part_b)) {
       const bool far = NearestContact(contact, X_AB).xi.head<3>().norm() > options_.far_distance;
@@ -129,9 +141,9 @@ class CoachConnectionModel : public ConnectionModel {
     return verdict;
   }
 
-  double LogOdds(const ContactClass& contact, const RelativePoseEstimate& estimate) const {
-    const ContactError error = NearestContact(contact, estimate.X_AB);
-    const Matrix6 made = estimate.covariance + Isotropic(options_.slack_position, options_.slack_angle);
+  double LogOdds(const ContactClass& contact, const Pose& X_AB, const Matrix6& covariance) const {
+    const ContactError error = NearestContact(contact, X_AB);
+    const Matrix6 made = covariance + Isotropic(options_.slack_position, options_.slack_angle);
     // Only in the directions in which the joint holds.
     const auto& N = error.constrained;
     const auto log_normal = [&](const Matrix6& C) -> double {
@@ -165,54 +177,128 @@ class CoachConnectionModel : public ConnectionModel {
   double UnknownContact(const RelativePoseEstimate& estimate, const PairEvidence& pair) const {
     const bool moved = estimate.travel > options_.unknown_travel && estimate.constant_for >= options_.unknown_time;
     const bool touching = std::abs(pair.surface_distance) < options_.unknown_gap;
-    return moved && touching ? options_.largest_log_odds : -2;
+    const bool together =
+        pair.relative_motion[0] < options_.unknown_slip && pair.relative_motion[1] < options_.unknown_twist;
+    return moved && touching && together ? options_.largest_log_odds : -2;
   }
 
-  /// Whether a single measurement agrees with the joint.
-  bool Agrees(const ContactClass& contact, const RelativePoseSample& s) const {
-    const ContactError error = NearestContact(contact, s.X_AB);
-    const Matrix6 spread = s.covariance + Isotropic(options_.slack_position, options_.slack_angle);
-    const double position = std::sqrt(spread.topLeftCorner<3, 3>().trace() / 3);
-    const double angle = std::sqrt(spread.bottomRightCorner<3, 3>().trace() / 3);
-    return error.xi.head<3>().norm() < std::max(kSeatedPosition, 3 * position) &&
-           error.xi.tail<3>().norm() < std::max(kSeatedAngle, 3 * angle);
+  static double Smaller(const std::array<double, 2>& x) { return std::min(x[0], x[1]); }
+  static double Speed(const PairView& view) {
+    return std::max(view.a->velocity.head<3>().norm(), view.b->velocity.head<3>().norm());
   }
 
-  /// Walks back from now while measurements agree; two in three may be glitches for a quarter of a second.
-  static constexpr int64_t kGlitch = 250000;
-  int64_t Arrival(const RelativePoseWindow& window, const ContactClass& contact, int64_t now) const {
-    int64_t first = now, last_against = -1;
-    const auto& samples = window.samples();
-    for (auto s = samples.rbegin(); s != samples.rend(); ++s) {
-      if (Agrees(contact, *s)) {
-        first = s->utime;
-        last_against = -1;
-      } else {
-        if (last_against < 0) last_against = s->utime;
-        if (first - s->utime > kGlitch) break;
-      }
-    }
-    // Nothing was seen between the last measurement against and the first for: the middle is the least wrong.
-    return last_against >= 0 ? (first + last_against) / 2 : first;
+  /// What a fast or hardly visible part is worse measured than its covariance says.
+  Matrix6 Blur(const PairView& view, double visible) const {
+    const double speed = Speed(view), hidden = options_.hidden_blur * std::clamp(1 - visible, 0.0, 1.0);
+    return Isotropic(std::hypot(options_.blur_time * speed, hidden), options_.blur_turn * speed);
   }
-  int64_t Departure(const RelativePoseWindow& window, const ContactClass& contact, int64_t now) const {
-    int64_t first_against = now;
-    const auto& samples = window.samples();
-    for (auto s = samples.rbegin(); s != samples.rend(); ++s) {
-      if (!Agrees(contact, *s)) {
-        first_against = s->utime;
-      } else if (first_against - s->utime > 0) {
-        return (first_against + s->utime) / 2;
-      }
+
+  /// A part that leaves its joint, or turns over in it, from one frame to the next is one that the tracker lost.
+  void WatchForJumps(const PairView& view) {
+    Course& course = courses_[{view.part_a, view.part_b}];
+    const Pose X_AB = view.evidence ? view.evidence->X_AB : view.a->X_TP.inverse() * view.b->X_TP;
+    if (view.decided >= 0 && view.inferred == course.inferred && view.utime - course.utime <= kLongestFrame) {
+      const ContactClass& contact = Classes(view.part_a, view.part_b)[view.decided];
+      const ContactError now = NearestContact(contact, X_AB), then = NearestContact(contact, course.X_AB);
+      const double passed = static_cast<double>(view.utime - course.utime) * 1e-6;
+      const auto too_fast = [&](const Vector6& from, const Vector6& to) -> bool {
+        const Matrix3 turn = ExpRotation(from.tail<3>()).transpose() * ExpRotation(to.tail<3>());
+        return (to - from).head<3>().norm() > kJitter + options_.fastest_pull * passed ||
+               RotationAngle(turn) > kTwistJitter + options_.fastest_twist * passed;
+      };
+      // Of two poses that look alike either may have been measured, either may be the nearest.
+      const bool jumped = too_fast(then.xi, now.xi) && too_fast(then.xi, Difference(then.X_nominal, X_AB));
+      if (jumped) course.jumped = view.utime;
     }
-    return first_against;
+    course.inferred = view.inferred;
+    course.utime = view.utime;
+    course.X_AB = X_AB;
   }
+  bool JumpedLately(const PairView& view) const {
+    const Course& course = courses_.at({view.part_a, view.part_b});
+    return static_cast<double>(view.utime - course.jumped) * 1e-6 < options_.jump_time;
+  }
+
+  /// Tracking errors last, so no number of frames that show a made joint open proves it open: the measurement itself
+  /// has to be one that a tracker which still has both parts can give.
+  bool Credible(const PairView& view, double visible, const PairVerdict& verdict) const {
+    const double best =
+        verdict.log_odds.empty() ? 0 : *std::max_element(verdict.log_odds.begin(), verdict.log_odds.end());
+    if (view.decided < 0) return !view.misfit || best > 0;
+    if (verdict.log_odds[view.decided] > 0) return true;
+    if (view.misfit || visible < options_.break_visible) return false;
+    if (JumpedLately(view)) return false;
+    return Speed(view) < options_.calm_speed || view.evidence->surface_distance > options_.clear_gap;
+  }
+
+  /// Maximum likelihood of the moment from which on the pair was (or was no longer) in the class: the start of the
+  /// stretch up to now over which the log odds of the single measurements sum up to most. What is hardly visible counts
+  /// little.
+  int64_t ChangePoint(const RelativePoseWindow& window, const ContactClass& contact, bool arrives, int64_t now) const {
+    const auto& samples = window.samples();
+    double sum = 0, largest = 0;
+    size_t first = samples.size();  // of the stretch
+    int64_t later = now;
+    for (size_t i = samples.size(); i-- > 0;) {
+      const double odds = LogOdds(contact, samples[i].X_AB, samples[i].covariance);
+      const double share =
+          std::min(1.0, static_cast<double>(later - samples[i].utime) * 1e-6 / options_.correlation_time);
+      sum += Clarity(samples[i]) * share *
+             std::clamp(arrives ? odds : -odds, -options_.dating_limit, options_.dating_limit);
+      later = samples[i].utime;
+      if (sum < largest - kOtherwise) break;
+      if (sum < largest) continue;
+      largest = sum;
+      first = i;
+    }
+    if (first == samples.size()) return now;
+    size_t before = first;  // the last measurement in front of it that says something
+    while (before > 0 && Clarity(samples[--before]) < kClear) {
+    }
+    while (first + 1 < samples.size() && Clarity(samples[first]) < kClear) ++first;
+    if (before >= first) return samples[first].utime;
+    return arrives ? Meeting(samples, before, samples[first].utime, contact)
+                   : (samples[before].utime + samples[first].utime) / 2;
+  }
+
+  /// 0..1, how much a measurement is worth by what was visible.
+  double Clarity(const RelativePoseSample& s) const {
+    return std::clamp((s.visible - options_.smallest_visible) / (options_.dating_visible - options_.smallest_visible),
+                      0.0, 1.0);
+  }
+
+  /// When two parts met that were last seen apart and coming together, before they were seen joined at `seen`: at the
+  /// pace they had. With no such pace the middle of the time between is the least wrong.
+  int64_t Meeting(const std::deque<RelativePoseSample>& samples, size_t last, int64_t seen,
+                  const ContactClass& contact) const {
+    const int64_t from = samples[last].utime;
+    const auto distance = [&](size_t i) -> double {
+      return NearestContact(contact, samples[i].X_AB).xi.head<3>().norm();
+    };
+    const double left = distance(last);
+    double pace = 0;
+    for (size_t i = last; i-- > 0 && from - samples[i].utime <= kGlitch;) {
+      const double passed = static_cast<double>(from - samples[i].utime) * 1e-6;
+      if (Clarity(samples[i]) >= kClear) pace = std::max(pace, (distance(i) - left) / passed);
+    }
+    if (pace < options_.least_approach) return (from + seen) / 2;
+    return std::min(seen, from + static_cast<int64_t>(kSlowing * left / pace * 1e6));
+  }
+
+  /// The last relative pose, whatever it was worth.
+  struct Course {
+    int64_t utime = INT64_MIN / 2;
+    Pose X_AB = Pose::Identity();
+    bool inferred = false;
+    int64_t jumped = INT64_MIN / 2;  ///< us, when a believed joint last opened as no hand can open it
+  };
 
   const Task& task_;
   const ContactTable& contacts_;
   CoachConnectionModelOptions options_;
   std::map<std::pair<int, int>, RelativePoseWindow> windows_;
   std::map<int, Repeats> repeats_;
+  std::map<std::pair<int, int>, Course> courses_;
 };
 
 }  // namespace

@@ -10,9 +10,8 @@ namespace {
 constexpr double kMicro = 1e-6;
 constexpr int64_t kMotionTime = 500000;     // us, over which PairEvidence::motion is measured
 constexpr double kMedianVariance = 1.57;    // pi / 2: variance of a median over that of a mean, normal errors
-constexpr double kTrimmedVariance = 1.1;    // the same for the trimmed mean
 constexpr double kTrim = 2.5;               // robust deviations from the median beyond which a sample does not count
-constexpr double kGrowth = 1.3;             // of the windows that are tried
+constexpr double kGrowth = 1.2;             // of the windows that are tried
 constexpr double kMadToDeviation = 1.4826;  // of normal errors
 constexpr double kLongestStep = 0.1;        // s, a longer gap between samples covers no more time than this
 
@@ -20,6 +19,12 @@ double Median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Variance of the mean over `spans` correlation times of an Ornstein-Uhlenbeck process of variance 1.
+double VarianceOfMean(double spans) {
+  if (spans < 1e-3) return 1;
+  return 2 / spans * (1 - (1 - std::exp(-spans)) / spans);
 }
 
 struct Summary {
@@ -69,6 +74,18 @@ void RelativePoseWindow::Add(const RelativePoseSample& sample) {
   while (samples_.front().utime < oldest) samples_.pop_front();
 }
 
+bool RelativePoseWindow::Changed(const std::vector<Vector6>& x, size_t split, const Matrix6& covariance,
+                                 double spans) const {
+  const double share = static_cast<double>(split) / static_cast<double>(x.size());
+  const double variance = kMedianVariance * (VarianceOfMean(spans * share) + VarianceOfMean(spans * (1 - share)));
+  const Vector6 change = Summarise(x, 0, split).median - Summarise(x, split, x.size()).median;
+  for (int i = 0; i < 6; ++i) {
+    const double floor = i < 3 ? options_.change_position : options_.change_angle;
+    if (std::abs(change[i]) > floor + options_.change_sigmas * std::sqrt(variance * covariance(i, i))) return true;
+  }
+  return false;
+}
+
 std::optional<RelativePoseEstimate> RelativePoseWindow::Estimate(int64_t now) const {
   std::optional<RelativePoseEstimate> best;
   if (samples_.empty()) return best;
@@ -90,19 +107,15 @@ std::optional<RelativePoseEstimate> RelativePoseWindow::Estimate(int64_t now) co
     double covered = 0;
     for (size_t i = next; i + 1 < samples_.size(); ++i)
       covered += std::min(kLongestStep, static_cast<double>(samples_[i + 1].utime - samples_[i].utime) * kMicro);
-    const double independent = std::max(1.0, covered / (2 * options_.correlation_time));
-    if (best && x.size() >= 4) {
-      const size_t half = x.size() / 2;
-      const Vector6 change = Summarise(x, 0, half).median - Summarise(x, half, x.size()).median;
-      for (int i = 0; i < 6; ++i) {
-        const double sigma = std::sqrt(2 * kMedianVariance * mean_covariance(i, i) / std::max(1.0, independent / 2));
-        const double floor = i < 3 ? options_.change_position : options_.change_angle;
-        if (std::abs(change[i]) > floor + options_.change_sigmas * sigma) return best;
-      }
-    }
+    const double spans = covered / options_.correlation_time;
+    if (best && x.size() >= 4 && Changed(x, x.size() / 2, mean_covariance, spans)) return best;
+    // A change near either end moves no median of a half.
+    const size_t quarter = x.size() / 4;
+    if (best && quarter >= 3 && Changed(x, quarter, mean_covariance, spans)) return best;
+    if (best && quarter >= 3 && Changed(x, x.size() - quarter, mean_covariance, spans)) return best;
     RelativePoseEstimate estimate;
     estimate.X_AB = Perturb(reference, all.trimmed_mean);
-    estimate.covariance = wide * (independent > 1 ? std::min(1.0, kTrimmedVariance / independent) : 1.0);
+    estimate.covariance = wide * VarianceOfMean(spans);
     estimate.constant_for = covered;
     // A sample's motion is that of the half second before it, which has to lie in the window.
     for (size_t i = next; i < samples_.size(); ++i) {

@@ -25,8 +25,8 @@ double MedianOfAbsolute(std::vector<double> x) {
   return Quantile(std::move(x), 0.5);
 }
 
-std::vector<ConnectionEvent> Run(const Task& task, const ScriptedLesson& lesson, bool paper) {
-  AssemblyReasonerOptions options;
+std::vector<ConnectionEvent> Run(const Task& task, const ScriptedLesson& lesson, AssemblyReasonerOptions options,
+                                 bool paper) {
   options.paper = paper;
   AssemblyReasoner reasoner(task, options);
   std::vector<ConnectionEvent> events;
@@ -66,12 +66,17 @@ int main(int argc, char** argv) {
   double fps = 30, misses = 0.3;
   uint64_t seed = 1;
   bool verbose = false, no_paper = false;
+  AssemblyReasonerOptions reasoner;
   app.add_option("tasks", tasks, "task files")->required()->check(CLI::ExistingFile);
   app.add_option("--noise", noises, "tracker errors, mm");
   app.add_option("--lessons", lessons, "lessons a row");
   app.add_option("--fps", fps, "frames a second");
   app.add_option("--near-misses", misses, "probability of a near miss before a step");
   app.add_option("--seed", seed, "of the scripts and the errors");
+  app.add_option("--decide-probability", reasoner.decide_probability, "from which on a joint is decided");
+  app.add_option("--decide-hold", reasoner.decide_hold, "s for which it has to last");
+  app.add_option("--forgetting", reasoner.belief.forgetting_time, "s in which new evidence replaces old");
+  app.add_option("--price", reasoner.belief.price_connection, "nats against a connection that is not decided");
   app.add_flag("--events", verbose, "print every event");
   app.add_flag("--no-paper", no_paper, "Coach's model only");
   CLI11_PARSE(app, argc, argv);
@@ -93,14 +98,14 @@ int main(int argc, char** argv) {
           errors.position = mm / 1000;
           const auto lesson = PlayScript(task, RandomScript(task, options, random), errors, fps, random());
           near_misses += lesson.near_misses;
-          const auto said = Run(task, lesson, false);
+          const auto said = Run(task, lesson, reasoner, false);
           const EventScore one = Score(lesson.events, said);
           if (verbose) {
             std::printf("lesson %d: %d of %d, %d false\n", i, one.found, one.truths, one.false_alarms);
             PrintEvents(lesson, said);
           }
           coach_score += one;
-          if (!no_paper) paper_score += Score(lesson.events, Run(task, lesson, true));
+          if (!no_paper) paper_score += Score(lesson.events, Run(task, lesson, reasoner, true));
         }
         const std::string name = std::filesystem::path(file).stem().string();
         if (!no_paper) PrintRow(name, mm / 1000, "paper [1]", paper_score, lessons, near_misses);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "services/assembly_reasoner/contact_classes.h"
+#include "services/assembly_reasoner/hidden_parts.h"
 
 namespace coach {
 namespace {
@@ -29,19 +30,6 @@ Vector3 RandomVector(std::mt19937_64& random, double deviation) {
 
 double Uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-/// Of X_AB for independent errors of both parts in the table frame.
-Matrix6 RelativeCovariance(const PartEstimate& a, const PartEstimate& b) {
-  const Matrix3 R_AT = a.X_TP.linear().transpose();
-  const Vector3 d = b.X_TP.translation() - a.X_TP.translation();
-  Matrix3 D;
-  D << 0, -d.z(), d.y(), d.z(), 0, -d.x(), -d.y(), d.x(), 0;
-  Matrix6 J = Matrix6::Zero();
-  J.topLeftCorner<3, 3>() = -R_AT;
-  J.topRightCorner<3, 3>() = R_AT * D;
-  J.bottomRightCorner<3, 3>() = -R_AT;
-  return J * a.covariance * J.transpose() + RotateCovariance(R_AT, b.covariance);
 }
 
 /// The errors of one part over time.
@@ -290,6 +278,7 @@ class Stage {
       if (visible_[p] >= 0.05) held_[p] = seen;
       part.X_TP = held_[p];
       part.covariance = errors_[p].Covariance();
+      if (!truth_.empty()) part.velocity = Difference(truth_.back()[p], X_[p]) / dt_;
       part.visible_fraction = visible_[p];
       part.status = visible_[p] >= 0.05 ? PartStatus::kTracked : PartStatus::kOccluded;
       part.confidence = visible_[p];
@@ -321,7 +310,8 @@ class Stage {
     pair.part_a = a;
     pair.part_b = b;
     pair.X_AB = out.parts[a].X_TP.inverse() * out.parts[b].X_TP;
-    pair.covariance = RelativeCovariance(out.parts[a], out.parts[b]);
+    pair.covariance =
+        RelativeCovariance(out.parts[a].X_TP, out.parts[a].covariance, out.parts[b].X_TP, out.parts[b].covariance);
     const size_t half_second = static_cast<size_t>(0.5 / dt_);
     const std::vector<Pose>& then = truth_[truth_.size() > half_second ? truth_.size() - 1 - half_second : 0];
     const Vector6 moved = Difference(then[a], X_[a]);

@@ -143,6 +143,7 @@ SequenceSummary TrackSequence(const SequenceOptions& options) {
     ReasonerOutput reasoned = reasoner.Step(poses);
     const double t3 = ProcessorTime();
     belief = std::move(reasoned.belief);
+    if (options.observe) options.observe(poses);
     detector_times.push_back(t1 - t0);
     filter_times.push_back(t2 - t1);
     const int im_id = reader.im_id(i);

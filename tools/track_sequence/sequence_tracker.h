@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 
+#include "common/assembly/part_poses.h"
 #include "common/assembly/task.h"
 
 namespace coach {
@@ -21,6 +23,7 @@ struct SequenceOptions {
   bool paper = false;             ///< the paper's algorithm by its equations
   bool initial_poses_from_gt = false;  ///< scene_gt.json's poses of the first frame are suggested to the filter
   bool realtime = false;          ///< drops frames as a live camera would: not reproducible
+  std::function<void(const PartPoses&)> observe;  ///< called with what the tracker says of each frame; may be empty
 };
 
 struct SequenceSummary {
