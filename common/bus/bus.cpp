@@ -12,6 +12,8 @@
 #include <chrono>
 #include <cstring>
 
+#include "common/bus/received_bytes.h"
+
 namespace coach {
 namespace {
 
@@ -105,16 +107,25 @@ void Bus::Add(const std::string& channel, bool newest_only, bool skip, ByteHandl
       std::make_unique<Subscription>(Subscription{this, full, skip && !lockstep_, std::move(handler), {}, 0});
   const auto receive = [](const lcm_recv_buf_t* buffer, const char*, void* user) {
     auto& self = *static_cast<Subscription*>(user);
-    const std::span<const uint8_t> bytes(static_cast<const uint8_t*>(buffer->data), buffer->data_size);
-    ++self.bus->received_;
-    if (!self.newest) return self.bus->Dispatch(self, bytes);
-    self.waiting.assign(bytes.begin(), bytes.end());
-    ++self.num_waiting;
+    self.bus->Receive(self, *buffer);
   };
   lcm_subscription_t* handle = lcm_subscribe(lcm_, Literal(full).c_str(), receive, subscription.get());
   if (!handle) throw BusError("cannot subscribe to " + full + " on " + url_);
   lcm_subscription_set_queue_capacity(handle, newest_only ? kImageQueueCapacity : kQueueCapacity);
   subscriptions_.push_back(std::move(subscription));
+}
+
+void Bus::Receive(Subscription& subscription, const lcm_recv_buf_t& message) {
+  ++received_;
+  std::span<const uint8_t> bytes;
+  try {
+    bytes = ReceivedBytes(message);
+  } catch (const std::invalid_argument& e) {
+    return CountError(subscription, 0, e.what());
+  }
+  if (!subscription.newest) return Dispatch(subscription, bytes);
+  subscription.waiting.assign(bytes.begin(), bytes.end());
+  ++subscription.num_waiting;
 }
 
 void Bus::Dispatch(Subscription& subscription, std::span<const uint8_t> bytes) {
@@ -125,11 +136,15 @@ void Bus::Dispatch(Subscription& subscription, std::span<const uint8_t> bytes) {
     why = e.what();
   } catch (...) {
   }
+  CountError(subscription, bytes.size(), why);
+}
+
+void Bus::CountError(const Subscription& subscription, size_t size, const std::string& why) {
   ++errors_;
   const int64_t now = SteadyMicroseconds();
   if (last_log_us_ != 0 && now - last_log_us_ < kLogInterval) return;
   last_log_us_ = now;
-  spdlog::warn("{}: message of {} bytes dropped: {} ({} so far)", subscription.channel, bytes.size(), why, errors_);
+  spdlog::warn("{}: message of {} bytes dropped: {} ({} so far)", subscription.channel, size, why, errors_);
 }
 
 void Bus::DispatchNewest() {

@@ -13,6 +13,7 @@
 #include "common/bus/decode_message.h"
 
 struct _lcm_t;
+struct _lcm_recv_buf_t;
 
 namespace coach {
 
@@ -90,7 +91,9 @@ class Bus {
     };
   }
   void Add(const std::string& channel, bool newest_only, bool skip, ByteHandler handler);
+  void Receive(Subscription& subscription, const _lcm_recv_buf_t& message);
   void Dispatch(Subscription& subscription, std::span<const uint8_t> bytes);
+  void CountError(const Subscription& subscription, size_t size, const std::string& why);
   void DispatchNewest();
   bool Refuse(const std::string& channel);
 

@@ -16,6 +16,7 @@ int64_t Microseconds() {
 
 FrameGrabber::FrameGrabber(OpenSource open, const GrabberOptions& options, std::function<void()> notify)
     : open_(std::move(open)), options_(options), notify_(std::move(notify)), loop_start_(options.utime_origin) {
+  last_sign_ = Microseconds<std::chrono::steady_clock>();
   thread_ = std::thread([this] { Work(); });
 }
 
@@ -70,9 +71,10 @@ void FrameGrabber::Work() {
       if (!PlayOnce()) break;
     } catch (const SourceLost& e) {
       if (grabbed_ > before) retry = options_.retry_ms * 1e-3;
+      last_sign_ = Microseconds<std::chrono::steady_clock>();
       SetComplaint(e.what());
       if (!Pause(retry)) return;
-      retry = std::min(2 * retry, 5.0);
+      retry = std::min(2 * retry, 1.0);
     } catch (...) {
       const std::lock_guard lock(mutex_);
       failure_ = std::current_exception();
@@ -107,7 +109,7 @@ bool FrameGrabber::PlayOnce() {
       SetComplaint(e.what());
       continue;
     }
-    const int64_t now = Microseconds<std::chrono::steady_clock>();
+    const int64_t now = last_sign_ = Microseconds<std::chrono::steady_clock>();
     if (outcome == FrameSource::Outcome::kEnd) {
       loop_start_ = last_utime_ + std::llround(source->period_us());
       return options_.loop;

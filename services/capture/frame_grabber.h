@@ -20,7 +20,7 @@ struct GrabberOptions {
   bool every_frame = false;  ///< of a recording: wait for Take() instead of pacing and dropping
   bool loop = false;         ///< of a recording
   int64_t utime_origin = 0;  ///< us; utime of a recording's first frame
-  int retry_ms = 250;        ///< first pause before a lost source is opened again; doubles up to 5 s
+  int retry_ms = 250;        ///< first pause before a lost source is opened again; doubles up to 1 s
   int timeout_ms = 2000;     ///< a camera that gives nothing this long is opened again
 };
 
@@ -42,7 +42,9 @@ class FrameGrabber {
   bool ended() const { return ended_; }           ///< the recording is over and its last frame was taken
   int64_t grabbed() const { return grabbed_; }    ///< frames that came
   int64_t replaced() const { return replaced_; }  ///< of them, never taken
-  std::string complaint() const;                  ///< what is wrong at the moment; empty if all is well
+  /// When its thread last came back from the source, us of the steady clock: a camera's driver may hang for ever.
+  int64_t last_sign() const { return last_sign_; }
+  std::string complaint() const;  ///< what is wrong at the moment; empty if all is well
   /// Why the grabber gave up for good; null if it didn't.
   std::exception_ptr failure() const;
 
@@ -64,7 +66,7 @@ class FrameGrabber {
   std::exception_ptr failure_;
   bool stop_ = false, over_ = false;
   std::atomic<bool> ended_{false};
-  std::atomic<int64_t> grabbed_{0}, replaced_{0};
+  std::atomic<int64_t> grabbed_{0}, replaced_{0}, last_sign_{0};
   int64_t sequence_ = 0;
   int64_t loop_start_ = 0, last_utime_ = 0;  ///< us, utime
   std::optional<int64_t> play_start_;        ///< us, steady clock at utime_origin

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 
 #include "common/bus/image_messages.h"
 #include "common/bus/process_facts.h"
@@ -13,6 +14,7 @@
 namespace coach {
 namespace {
 
+constexpr int64_t kHangs = 15'000'000;         // us; a camera's driver that doesn't come back for so long never will
 constexpr int64_t kAnswerTimeout = 2'000'000;  // us; lockstep goes on without an answer after this
 
 struct Arguments {
@@ -68,12 +70,21 @@ class CaptureService {
 
  private:
   void Step() {
+    EndIfTheDriverHangs();
     if (waiting_for_ >= 0 && SteadyTime() < answer_due_) return;
     const std::optional<Frame> frame = grabber_.Take();
     CountFrames();
     if (frame) Answer(*frame);
     ReportState();
     if (!frame && grabber_.ended()) node_.Stop();
+  }
+
+  /// Nothing in this process can end a thread that hangs in a driver: the process goes, and is started again.
+  void EndIfTheDriverHangs() const {
+    const bool recording = options_.source.rfind("openni2:", 0) != 0;
+    if (recording || grabber_.ended() || SteadyTime() - grabber_.last_sign() < kHangs) return;
+    spdlog::critical("{}: the camera's driver hangs", options_.source);
+    std::_Exit(3);
   }
 
   void CountFrames() {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "common/bus/process_facts.h"
+#include "common/bus/received_bytes.h"
 #include "common/bus/service_main.h"
 #include "tools/log/recorder.h"
 
@@ -39,25 +40,29 @@ class Listener {
   Listener& operator=(const Listener&) = delete;
 
   struct Figures {
-    int64_t events, refused;
+    int64_t events, refused, hostile;
     bool disk_refuses;
     std::string file;
   };
   Figures Flush() {
     const std::lock_guard lock(mutex_);
     recorder_.Flush();
-    return {recorder_.events(), recorder_.refused(), recorder_.disk_refuses(), recorder_.file().string()};
+    return {recorder_.events(), recorder_.refused(), hostile_, recorder_.disk_refuses(), recorder_.file().string()};
   }
 
  private:
   static void OnMessage(const lcm_recv_buf_t* message, const char* channel, void* self) {
     auto& listener = *static_cast<Listener*>(self);
     const std::lock_guard lock(listener.mutex_);
-    listener.recorder_.Write(message->recv_utime, channel,
-                             {static_cast<const uint8_t*>(message->data), message->data_size});
+    try {
+      listener.recorder_.Write(message->recv_utime, channel, ReceivedBytes(*message));
+    } catch (const std::invalid_argument&) {
+      ++listener.hostile_;
+    }
   }
 
   Recorder& recorder_;
+  int64_t hostile_ = 0;  ///< packets that are no messages
   std::mutex mutex_;
   lcm_t* lcm_;
   std::atomic<bool> stopping_{false};
@@ -71,10 +76,12 @@ void Run(const ServiceContext& context, const RecorderOptions& options) {
   Node node(node_options);
   Listener listener(context.station.table_url, context.station.name, recorder);
   spdlog::info("recording to {}, {} pictures", options.folder.string(), options.images ? "with" : "without");
-  int64_t events = 0, last_event = SteadyTime();
+  int64_t events = 0, hostile = 0, last_event = SteadyTime();
   node.Run([&] {
     const auto figures = listener.Flush();
-    node.Received(figures.events + figures.refused - node.statistics().received);
+    node.Received(figures.events + figures.refused + figures.hostile - node.statistics().received);
+    node.Dropped(figures.hostile - hostile);
+    hostile = figures.hostile;
     if (figures.events > events) last_event = SteadyTime();
     events = figures.events;
     if (figures.disk_refuses) {

@@ -7,6 +7,10 @@
 // what really happened), and opened on demand for coach-child:STATION.yaml. $COACH_OPENNI2_FPS is the rate of either
 // (30 Hz, child 15 Hz). After $COACH_OPENNI2_UNPLUG frames (default: never) the camera is unplugged, and plugged in
 // again 0.5 s later.
+//
+// With $COACH_OPENNI2_BEGIN (s of the monotonic clock) a scene goes on whether or not anybody looks: its first frame
+// stands still until then, its last one after the end. With $COACH_OPENNI2_PLUG the camera is gone once there is no
+// file of that name, and found by whoever starts OpenNI2 when there is one.
 #include <cmath>
 #include <cstdlib>
 #include <new>
@@ -19,12 +23,14 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <thread>
 
 #include "tools/openni2_driver/picture_source.h"
@@ -48,8 +54,11 @@ bool IsOurs(const std::string& uri) { return !After(uri, kScene).empty() || !Aft
 
 std::unique_ptr<PictureSource> OpenPictures(const std::string& uri) {
   const double fps = std::atof(Setting("COACH_OPENNI2_FPS").c_str());
-  if (const std::string folder = After(uri, kScene); !folder.empty())
-    return OpenScenePictures(folder, fps > 0 ? fps : 30);
+  if (const std::string folder = After(uri, kScene); !folder.empty()) {
+    const std::string begin = Setting("COACH_OPENNI2_BEGIN");
+    return OpenScenePictures(folder, fps > 0 ? fps : 30,
+                             begin.empty() ? std::nullopt : std::optional(std::atof(begin.c_str())));
+  }
   ChildOptions child;
   child.station = After(uri, kChild);
   child.temper = Setting("COACH_OPENNI2_CHILD", "listens");
@@ -57,6 +66,11 @@ std::unique_ptr<PictureSource> OpenPictures(const std::string& uri) {
   if (fps > 0) child.fps = fps;
   child.truth = Setting("COACH_OPENNI2_TRUTH");
   return OpenChildPictures(child);
+}
+
+bool Unplugged() {
+  const std::string plug = Setting("COACH_OPENNI2_PLUG");
+  return !plug.empty() && !std::filesystem::exists(plug);
 }
 
 template <class T>
@@ -262,7 +276,7 @@ class PictureDriver final : public oni::driver::DriverBase {
                        oni::driver::DeviceDisconnectedCallback disconnected,
                        oni::driver::DeviceStateChangedCallback changed, void* cookie) override {
     const OniStatus status = DriverBase::initialize(connected, disconnected, changed, cookie);
-    if (status != ONI_STATUS_OK) return status;
+    if (status != ONI_STATUS_OK || Unplugged()) return status;
     const std::string folder = Setting("COACH_OPENNI2_SCENE"), station = Setting("COACH_OPENNI2_STATION");
     if (!folder.empty()) Announce(kScene + folder);
     if (folder.empty() && !station.empty()) Announce(kChild + station);
@@ -303,13 +317,14 @@ class PictureDriver final : public oni::driver::DriverBase {
 
   bool StaysPlugged(int frames) {
     const char* text = std::getenv("COACH_OPENNI2_UNPLUG");
-    if (!text || frames != std::atoi(text)) return true;
+    if ((!text || frames != std::atoi(text)) && !Unplugged()) return true;
     if (plug_.joinable()) plug_.join();
     plug_ = std::thread([this] {
       deviceDisconnected(&info_);
       std::unique_lock lock(mutex_);
       // Not once the library shuts down: it would wait for this thread, and the call below for it.
-      if (!stopped_.wait_for(lock, std::chrono::milliseconds(500), [this] { return stop_; })) deviceConnected(&info_);
+      if (!stopped_.wait_for(lock, std::chrono::milliseconds(500), [this] { return stop_; }) && !Unplugged())
+        deviceConnected(&info_);
     });
     return false;
   }

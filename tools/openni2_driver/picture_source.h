@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "common/imaging/frame.h"
 
@@ -18,7 +19,10 @@ class PictureSource {
 };
 
 /// A scene folder; begins again when it is over. @throws std::runtime_error if it can't be read
-std::unique_ptr<PictureSource> OpenScenePictures(const std::filesystem::path& folder, double fps);
+/// @param begin s of the steady clock at which the scene begins, whoever looks: it stands still before, and on its last
+/// frame after its end
+std::unique_ptr<PictureSource> OpenScenePictures(const std::filesystem::path& folder, double fps,
+                                                 std::optional<double> begin);
 
 struct ChildOptions {
   std::filesystem::path station;  ///< station file: the task the child builds, the network on which it hears the robot

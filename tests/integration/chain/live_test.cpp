@@ -1,6 +1,9 @@
 // The chain over UDP: it answers, survives the death of any of its services and hostile messages, and ends when asked
 // to.
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -18,6 +21,19 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 constexpr char kUrl[] = "udpm://239.255.76.67:7667?ttl=0";
+
+/// Sends raw bytes to the network.
+void SendPackets(const std::string& bytes, int count) {
+  const int fd = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(7667);
+  inet_pton(AF_INET, "239.255.76.67", &to.sin_addr);
+  for (int i = 0; i < count; ++i) {
+    sendto(fd, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  }
+  close(fd);
+}
 
 class LiveChain : public testing::Test {
  protected:
@@ -149,6 +165,7 @@ TEST_F(LiveChain, HostileMessagesAreCountedAndNothingElse) {
   const Process capture = Capture();
   ASSERT_TRUE(Answers(10));
   const std::vector<uint8_t> garbage(3000, 0xff);
+  SendPackets("LC02....S/DETECTIONS", 100);  // ends before the channel's name does
   for (const char* channel :
        {"COLOR_IMAGE", "DEPTH_IMAGE", "DETECTIONS", "CONNECTION_BELIEF", "OPERATOR_COMMAND", "SERVICE_HEALTH"}) {
     for (size_t size = 1; size < garbage.size(); size += 297)

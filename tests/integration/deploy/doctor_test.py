@@ -94,6 +94,10 @@ class DoctorTest(unittest.TestCase):
             self.assertEqual(len(found), 1, found)
             self.assertIn("detector " + words, found[0][0])
             self.assertIn("coach-detector@T1", found[0][1])
+        silent = {**sound["detector"], "state": 2, "message": "no input yet"}
+        found = list(doctor.health_problems({**sound, "capture": {**silent, "message": "no camera"}, "detector": silent}, "T1", STATION))
+        self.assertEqual([what for what, _ in found], ["capture is in trouble: no camera"], "what follows from another trouble is none of its own")
+        self.assertEqual(len(list(doctor.health_problems({**sound, "detector": silent}, "T1", STATION))), 1)
         del sound["capture"]
         self.assertEqual([what for what, _ in doctor.health_problems(sound, "T1", STATION)], ["capture does not answer"])
 
