@@ -75,9 +75,12 @@ void AssemblyReasonerService::Subscribe() {
   });
 }
 
-void AssemblyReasonerService::HandlePoses(const PartPoses& poses) {
+void AssemblyReasonerService::HandlePoses(PartPoses poses) {
   node_.Received();
-  const LessonOutput out = lesson_.Step(poses);
+  const int64_t utime = poses.utime;
+  poses.utime = clock_.ToLesson(utime);
+  LessonOutput out = lesson_.Step(poses);
+  poses.utime = out.belief.utime = utime;
   if (!out.accepted) {
     node_.Dropped();
     if (++refused_ == 1 || refused_ % 100 == 0)

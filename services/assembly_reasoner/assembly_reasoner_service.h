@@ -12,6 +12,7 @@
 
 #include "common/bus/node.h"
 #include "services/assembly_reasoner/lesson.h"
+#include "services/assembly_reasoner/lesson_clock.h"
 
 namespace coach {
 
@@ -36,7 +37,7 @@ class AssemblyReasonerService {
 
   void Subscribe();
   void Restore();
-  void HandlePoses(const PartPoses& poses);
+  void HandlePoses(PartPoses poses);
   void HandleOperator(const OperatorCommand& command);
   void HandleStatus(const robot_status_t& message);
   void Deliver(const LessonOutput& out);
@@ -51,6 +52,7 @@ class AssemblyReasonerService {
   Bus* robot_ = nullptr;
   std::deque<Pending> pending_;
   std::ofstream log_;
+  LessonClock clock_;
   AssemblyState state_;
   int64_t last_state_ = 0, last_task_ = 0, last_scene_ = 0;  ///< us: state and task by the steady clock, scene by utime
   int64_t refused_ = 0;
