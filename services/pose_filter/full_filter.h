@@ -59,7 +59,7 @@ struct FullFilterOptions {
 
 class FullFilter final : public PoseFilter {
  public:
-  FullFilter(const Task& task, const FullFilterOptions& options, uint64_t seed, ParallelFor parallel_for);
+  FullFilter(const Task& task, const FullFilterOptions& options, uint64_t seed);
 
   const PartPoses& Step(const FilterInput& input) override;
   void Reset() override;
@@ -125,7 +125,6 @@ class FullFilter final : public PoseFilter {
   Task task_;
   FullFilterOptions options_;
   uint64_t seed_;
-  ParallelFor parallel_for_;
   std::vector<std::unique_ptr<Shape>> shapes_;  // one a type
   int num_classes_ = 0;
   std::vector<int> class_of_part_;

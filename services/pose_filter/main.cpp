@@ -21,7 +21,7 @@ PoseFilterService::MakeFilter ReadFilter(const YamlNode& section) {
   section.RejectUnknownKeys();
   if (mode == "paper")
     return [paper, seed](const Task& task) { return std::make_unique<PaperFilter>(task, paper, seed); };
-  return [full, seed](const Task& task) { return std::make_unique<FullFilter>(task, full, seed, SerialFor()); };
+  return [full, seed](const Task& task) { return std::make_unique<FullFilter>(task, full, seed); };
 }
 
 void RunFilter(ServiceContext& context) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 
@@ -12,11 +11,6 @@
 #include "common/geometry/camera.h"
 
 namespace coach {
-
-/// Calls body(i) for i in [0, n), perhaps on several threads; returns when all are done. Results may not depend on the
-/// order.
-using ParallelFor = std::function<void(int n, const std::function<void(int)>& body)>;
-ParallelFor SerialFor();
 
 /// One moment's input. What is missing is empty or null: the filter works on what is there.
 struct FilterInput {

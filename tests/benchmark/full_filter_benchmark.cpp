@@ -46,7 +46,7 @@ void FullStep(benchmark::State& state, int parts, int triangles, int particles) 
   const Scene scene(parts, triangles);
   FullFilterOptions options;
   options.particles = particles;
-  FullFilter filter(scene.task, options, 1, SerialFor());
+  FullFilter filter(scene.task, options, 1);
   filter.Suggest(scene.truth);
   std::vector<Detections> detections(scene.frames.size());
   for (size_t k = 0; k < detections.size(); ++k) detections[k].class_map = scene.frames[k].class_map;

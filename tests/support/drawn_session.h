@@ -11,7 +11,7 @@ namespace coach {
 class DrawnSession {
  public:
   explicit DrawnSession(const Task& task, uint64_t seed = 1, const FullFilterOptions& options = {})
-      : task_(task), filter_(task, options, seed, SerialFor()) {}
+      : task_(task), filter_(task, options, seed) {}
 
   /// One frame, dt seconds later. Without a colour image there are no detections.
   PartPoses Step(const TestPicture& picture, double dt = 1.0 / 30) {

@@ -97,7 +97,7 @@ std::vector<Pose> TruePoses(const std::filesystem::path& scene, const Task& task
 
 std::unique_ptr<PoseFilter> MakeFilter(const SequenceOptions& options, const Task& task) {
   if (options.paper) return std::make_unique<PaperFilter>(task, PaperFilterOptions{}, options.seed);
-  return std::make_unique<FullFilter>(task, FullFilterOptions{}, options.seed, SerialFor());
+  return std::make_unique<FullFilter>(task, FullFilterOptions{}, options.seed);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ TEST(FullFilterAllocations, SteadyState) {
                   static_cast<uint64_t>(k)));
     detections[static_cast<size_t>(k)].class_map = DrawnClassMap(task, pictures.back());
   }
-  FullFilter filter(task, {}, 1, SerialFor());
+  FullFilter filter(task, {}, 1);
   int64_t steady = 0, steady_bytes = 0, worst = 0;
   constexpr int kSteps = 30;
   for (int k = 0; k < 2 * kSteps; ++k) {
