@@ -17,6 +17,7 @@
 #include "tools/operator/page_json.h"
 #include "tools/operator/page_options.h"
 #include "tools/operator/table_setup.h"
+#include "tools/task/task_workshop.h"
 
 namespace coach {
 namespace {
@@ -158,7 +159,9 @@ class OperatorService {
     node_.SubscribeNewest<depth_image_t>([this](const depth_image_t& m) { newest_.OnDepth(m); });
     node_.Subscribe<config_t>([this](const config_t& m) { setup_.OnConfiguration(m.service, m.yaml); });
     node_.SubscribeNewest<part_poses_t>([this](const part_poses_t& m) {
-      lesson_.OnPoses(FromMessage(m));
+      const PartPoses poses = FromMessage(m);
+      lesson_.OnPoses(poses);
+      workshop_.OnPoses(poses);
       node_.Answered(m.received_utime);
     });
     node_.Subscribe<assembly_state_t>([this](const auto& m) { lesson_.OnState(FromMessage(m), WallTime()); });
@@ -199,7 +202,19 @@ class OperatorService {
         {"/api/setup/colour", true, [this](const Request& r) { return Answer{setup_.SuggestColour(r.body)}; }},
         {"/api/setup/seat", true, [this](const Request& r) { return Answer{setup_.SuggestSeat(r.body)}; }},
         {"/api/setup/save", true, [this](const Request& r) { return Answer{setup_.Save(r.body)}; }},
+        {"/api/task/mesh", true, [this](const Request& r) { return Answer{workshop_.AddMesh(r.name, r.body)}; },
+         TaskWorkshop::kLargestFile},
+        {"/api/task/make", true, [this](const Request& r) { return Answer{workshop_.Make(r.body, TaskOnTable())}; }},
+        {"/api/task/book", false,
+         [this](const Request& r) {
+           return Answer{BookOf(TaskFileNamed(setup_.station(), r.name)), "text/html; charset=utf-8"};
+         }},
     };
+  }
+
+  std::shared_ptr<const Task> TaskOnTable() const {
+    const auto view = lesson_.task();
+    return view ? view->task : nullptr;
   }
 
   void Queue(const Annotation& annotation) {
@@ -226,6 +241,7 @@ class OperatorService {
   Lesson lesson_;
   NewestFrame newest_;
   TableSetup setup_;
+  TaskWorkshop workshop_{[this] { return OwnTaskFolder(setup_.station()); }};
   CommandOutbox outbox_;
   AnnotationBook annotations_;
   Node node_;

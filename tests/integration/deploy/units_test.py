@@ -15,7 +15,7 @@ SYSTEM = pathlib.Path("/lib/systemd/system")
 
 def instances():
     """Every service and target, templates as those of the table T1."""
-    return sorted(file.name.replace("@.", "@T1.") for file in UNITS.iterdir() if file.suffix in (".service", ".target", ".timer"))
+    return sorted(file.name.replace("@.", "@T1.") for file in UNITS.iterdir() if file.suffix in (".service", ".target", ".timer", ".path"))
 
 
 def programs():
@@ -37,7 +37,7 @@ class UnitsTest(unittest.TestCase):
         shutil.copytree(UNITS, units)
         for target in SYSTEM.glob("*.target"):
             shutil.copy(target, units)
-        for program in [*(cls.root / "usr/bin" / name for name in programs().values()), cls.root / "usr/sbin/ip", cls.root / "usr/bin/find"]:
+        for program in [*(cls.root / "usr/bin" / name for name in programs().values()), cls.root / "usr/sbin/ip", cls.root / "usr/bin/find", cls.root / "usr/bin/systemctl"]:
             program.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy("/usr/bin/true", program)
 

@@ -8,6 +8,7 @@ import {setUpTable, showTable} from './table3d.js';
 import {addEvents, showTimeline} from './timeline.js';
 import {showHealth} from './health.js';
 import {setUpNotes, showNotes, showQuestionnaire} from './notes.js';
+import {setUpNewTask, showNewTask} from './new_task.js';
 import {setUpWizard, showWizard} from './setup.js';
 import {pageLanguage, t, usePageLanguage, wordsOf} from './words.js';
 
@@ -108,6 +109,7 @@ function showAll() {
   showQuestionnaire(toast);
   const rate = pictureRate();
   showWizard(page);
+  showNewTask(page);
   byId('camera-figures').textContent = rate > 0 ? t('fps', rate.toFixed(0)) : '';
   showCameraNote(rate > 0);
 }
@@ -141,12 +143,12 @@ function onView(view, jpeg) {
 
 function showPage() {
   const wanted = location.hash.slice(1) || 'lesson';
-  const known = [...document.querySelectorAll('.tabs a')].map((link) => link.dataset.page);
+  const known = [...document.querySelectorAll('.page')].map((section) => section.id.slice('page-'.length));
   const name = known.includes(wanted) ? wanted : 'lesson';
   for (const link of document.querySelectorAll('.tabs a')) link.dataset.page === name ? link.setAttribute('aria-current', 'page') : link.removeAttribute('aria-current');
   for (const section of document.querySelectorAll('.page')) section.hidden = section.id !== `page-${name}`;
-  if (name === 'lesson') {
-    showPictureIn(byId('lesson-stage'));
+  if (name === 'lesson') showPictureIn(byId('lesson-stage'));
+  if (name !== 'setup') {
     tintPicture(null);
     picturePlace(null);
   }
@@ -159,6 +161,7 @@ usePageLanguage(preferred);
 setUpControls();
 setUpTable();
 setUpWizard(send, toast);
+setUpNewTask(toast);
 setUpNotes(() => page.state?.data_utime ?? 0, toast);
 addEventListener('hashchange', () => { showPage(); scrollTo(0, 0); });
 showPage();

@@ -66,9 +66,14 @@ export async function fetchTask() {
 }
 
 /** Sends one thing. @return {id} or {error} */
-export async function post(path, body) {
+export const post = (path, body) => postAs(path, 'application/json', JSON.stringify(body));
+
+/** Sends a file. */
+export const postFile = (path, file) => postAs(path, 'application/octet-stream', file);
+
+async function postAs(path, type, body) {
   try {
-    const response = await fetch(path, {method: 'POST', headers: {'Content-Type': 'application/json', 'X-Coach': '1'}, body: JSON.stringify(body)});
+    const response = await fetch(path, {method: 'POST', headers: {'Content-Type': type, 'X-Coach': '1'}, body});
     return await response.json();
   } catch {
     return {error: null};

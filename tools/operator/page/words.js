@@ -1,5 +1,6 @@
 // Every word of the page, in every language of the page. {0}, {1} are filled in.
 
+import {NEW_WORDS} from './words_new.js';
 import {SETUP_WORDS} from './words_setup.js';
 
 const WORDS = {
@@ -36,7 +37,7 @@ const WORDS = {
     figure: {rate: 'rate', latency: 'delay', dropped: 'left out', lost: 'lost on the way', errors: 'unreadable', memory: 'memory'},
     of_99: '{0} ms, 99 % under {1} ms', of_received: '{0} of {1}', command: {choose_task: 'Choose task', language: 'Language', start: 'Start', pause: 'Pause', resume: 'Resume', skip: 'Skip step', mark_done: 'Mark done', mark_undone: 'Undo', repeat: 'Repeat', say: 'Say', volume: 'Volume', reset_tracker: 'Search again', stop: 'STOP', help: 'Give a hint'},
     colour: {blue: 'blue', green: 'green', red: 'red', yellow: 'yellow', orange: 'orange', white: 'white', black: 'black', purple: 'purple', brown: 'brown', pink: 'pink'},
-    setup: SETUP_WORDS.en, and: '{0} and {1}', lesson_of: 'lesson time {0}', language_name: {en: 'English', el: 'Greek'},
+    setup: SETUP_WORDS.en, new: NEW_WORDS.en, and: '{0} and {1}', lesson_of: 'lesson time {0}', language_name: {en: 'English', el: 'Greek'},
   },
   el: {
     pages: 'Σελίδες', skip_to_content: 'Μετάβαση στο μάθημα', lesson: 'Μάθημα', notes: 'Σημειώσεις', questions: 'Ερωτηματολόγιο', health: 'Σύστημα',
@@ -71,7 +72,7 @@ const WORDS = {
     figure: {rate: 'ρυθμός', latency: 'καθυστέρηση', dropped: 'παραλείφθηκαν', lost: 'χάθηκαν', errors: 'μη αναγνώσιμα', memory: 'μνήμη'},
     of_99: '{0} ms, 99 % κάτω από {1} ms', of_received: '{0} από {1}', command: {choose_task: 'Κατασκευή', language: 'Γλώσσα', start: 'Έναρξη', pause: 'Παύση', resume: 'Συνέχεια', skip: 'Επόμενο βήμα', mark_done: 'Έγινε', mark_undone: 'Αναίρεση', repeat: 'Ξανά', say: 'Πες το', volume: 'Ένταση', reset_tracker: 'Νέα αναζήτηση', stop: 'ΣΤΟΠ', help: 'Δώσε βοήθεια'},
     colour: {blue: 'μπλε', green: 'πράσινο', red: 'κόκκινο', yellow: 'κίτρινο', orange: 'πορτοκαλί', white: 'άσπρο', black: 'μαύρο', purple: 'μωβ', brown: 'καφέ', pink: 'ροζ'},
-    setup: SETUP_WORDS.el, and: '{0} και {1}', lesson_of: 'χρόνος {0}', language_name: {en: 'αγγλικά', el: 'ελληνικά'},
+    setup: SETUP_WORDS.el, new: NEW_WORDS.el, and: '{0} και {1}', lesson_of: 'χρόνος {0}', language_name: {en: 'αγγλικά', el: 'ελληνικά'},
   },
 };
 
