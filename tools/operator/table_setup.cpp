@@ -119,6 +119,13 @@ Json RobotJson(const Station& station) {
   return json;
 }
 
+/// A station that offers the shipped tasks.
+Station Shipped(const fs::path& folder) {
+  Station station = DefaultStation();
+  if (!folder.empty()) station.task = folder / "none.yaml";
+  return station;
+}
+
 /// Settings of {"low": [..], "high": [..]} by colour, with those that the station has already.
 std::string ColoursValue(const Station& station, const Json& changes) {
   Json all = Json::object();
@@ -167,9 +174,9 @@ void TableSetup::OnConfiguration(const std::string& service, const std::string& 
 }
 
 fs::path TableSetup::FileOfTask(const Station& station, const std::string& name) const {
-  Station offered = station;
-  if (offered.task.empty() && !sources_.shipped_tasks.empty()) offered.task = sources_.shipped_tasks / "none.yaml";
-  return TaskFileNamed(offered, name);
+  const auto own = TaskNames(station);
+  const bool known = std::find(own.begin(), own.end(), name) != own.end();
+  return TaskFileNamed(known ? station : Shipped(sources_.shipped_tasks), name);
 }
 
 std::shared_ptr<const Task> TableSetup::TaskOf(const Station& station, std::string& problem) const {
@@ -196,9 +203,11 @@ std::string TableSetup::Status() const {
   std::string task_problem;
   const auto task = TaskOf(now, task_problem);
   Json json{{"file", sources_.file.string()}, {"camera", CameraJson(frame, camera)}, {"robot", RobotJson(now)}};
-  Station offered = now;
-  if (offered.task.empty() && !sources_.shipped_tasks.empty()) offered.task = sources_.shipped_tasks / "none.yaml";
-  json["tasks"] = TaskNames(offered);
+  std::set<std::string> tasks;
+  for (const Station& offering : {now, Shipped(sources_.shipped_tasks)}) {
+    for (const auto& name : TaskNames(offering)) tasks.insert(name);
+  }
+  json["tasks"] = tasks;
   json["task"] = {{"choice", now.task.stem().string()}, {"problem", task_problem}};
   json["colours"] = Json::array();
   const auto own = ReadDetectorOptions(now.Section("detector")).colours;

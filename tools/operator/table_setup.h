@@ -22,7 +22,7 @@ class TableSetup {
   struct Sources {
     std::filesystem::path file;                   ///< station file; empty: nothing can be saved
     std::filesystem::path state_folder;           ///< written to a station file that names none
-    std::filesystem::path shipped_tasks;          ///< offered while the station has no task
+    std::filesystem::path shipped_tasks;          ///< offered beside the station's own
     std::function<std::optional<Frame>()> frame;  ///< the newest colour and depth
     const Lesson* lesson = nullptr;
   };

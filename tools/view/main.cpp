@@ -1,10 +1,12 @@
-// coach-view: a recorded scene with the tracked parts drawn over it, as pictures.
+// coach-view: a recorded scene with the tracked parts drawn over it, as pictures or in a window.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
@@ -21,7 +23,30 @@ constexpr size_t kMaxTriangles = 20000;  // of a mesh that is drawn
 struct Options {
   std::string scene, task, poses, output;
   int every = 1, from = 0, until = -1;
+  bool window = false;
+  double fps = 15;
 };
+
+constexpr const char* kWindow = "coach-view";
+
+/// Shows a picture for `milliseconds`; the space bar holds it. @return false if the window was closed, or by Esc or q
+bool Show(const cv::Mat& picture, int milliseconds) {
+  constexpr int kEscape = 27;
+  cv::imshow(kWindow, picture);
+  for (int key = cv::waitKey(std::max(1, milliseconds));; key = cv::waitKey(100)) {
+    static bool held = false;
+    if (key == ' ') held = !held;
+    if (key == kEscape || key == 'q' || cv::getWindowProperty(kWindow, cv::WND_PROP_VISIBLE) < 1) return false;
+    if (!held) return true;
+  }
+}
+
+void WritePicture(const std::string& folder, int im_id, const cv::Mat& picture) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d.jpg", im_id);
+  const auto file = std::filesystem::path(folder) / name;
+  if (!cv::imwrite(file.string(), picture)) throw std::runtime_error(file.string() + ": can't be written");
+}
 
 std::vector<cv::Point> Corners(const Polygon& polygon) {
   std::vector<cv::Point> corners;
@@ -89,7 +114,11 @@ int Draw(const Options& options) {
   const auto poses = ReadPoses(options.poses);
   std::vector<TriangleMesh> meshes;
   for (const auto& type : task.types) meshes.push_back(Simplified(type.mesh, kMaxTriangles));
-  std::filesystem::create_directories(options.output);
+  if (options.output.empty() && !options.window)
+    throw std::runtime_error("give a folder for the pictures, or --window");
+  if (options.window && !std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
+    throw std::runtime_error("there is no screen for a window; give a folder for the pictures");
+  if (!options.output.empty()) std::filesystem::create_directories(options.output);
   int drawn = 0;
   const int end = options.until < 0 ? scene.size() : std::min(scene.size(), options.until + 1);
   for (int index = options.from; index < end; index += options.every) {
@@ -103,13 +132,11 @@ int Draw(const Options& options) {
       DrawPart(frame.colour, Silhouette(meshes[type], pose.X_CP, frame.camera), ColourOf(task.types[type]),
                task.parts[k].name, pose.score > 0);
     }
-    char name[32];
-    std::snprintf(name, sizeof name, "%06d.jpg", scene.im_id(index));
-    const auto file = std::filesystem::path(options.output) / name;
-    if (!cv::imwrite(file.string(), frame.colour)) throw std::runtime_error(file.string() + ": can't be written");
+    if (!options.output.empty()) WritePicture(options.output, scene.im_id(index), frame.colour);
     ++drawn;
+    if (options.window && !Show(frame.colour, static_cast<int>(1000 / options.fps))) break;
   }
-  std::printf("%d pictures in %s\n", drawn, options.output.c_str());
+  if (!options.output.empty()) std::printf("%d pictures in %s\n", drawn, options.output.c_str());
   return drawn > 0 ? 0 : 1;
 }
 
@@ -123,7 +150,9 @@ int main(int argc, char** argv) {
       "coach-view");
   app.add_option("SCENE", options.scene, "scene folder")->required();
   app.add_option("POSES", options.poses, "poses of coach-track-sequence (BOP's results csv)")->required();
-  app.add_option("OUTPUT", options.output, "folder for the pictures")->required();
+  app.add_option("OUTPUT", options.output, "folder for the pictures");
+  app.add_flag("--window", options.window, "show them in a window: space bar holds, Esc ends");
+  app.add_option("--fps", options.fps, "pictures a second in the window")->check(CLI::Range(0.1, 100.0));
   app.add_option("--task", options.task, "task file (default: task.yaml of the scene)");
   app.add_option("--every", options.every, "draw every n-th frame")->check(CLI::PositiveNumber);
   app.add_option("--from", options.from, "first frame")->check(CLI::NonNegativeNumber);

@@ -69,7 +69,18 @@ class NewTaskTest(unittest.TestCase):
             checked = subprocess.run([pathlib.Path(PROGRAMS) / "coach-task", "check", station.folder / "state/tasks" / f"{made}.yaml"], capture_output=True, text=True)
             self.assertEqual((checked.returncode, checked.stderr), (0, ""))
             self.assertIn("2 part types, 3 parts, 2 connections, 2 steps", checked.stdout)
+            self.deleted_while_running(station, made)
             self.bad_input(station)
+
+    def deleted_while_running(self, station, name):
+        """The page goes on and says what is wrong."""
+        self.post(f"{station.url}api/setup/save", json.dumps({"task": name}).encode(), 200)
+        (station.folder / "state/tasks" / f"{name}.yaml").unlink()
+        with urllib.request.urlopen(f"{station.url}api/setup", timeout=10) as answer:
+            self.assertIn(name, json.load(answer)["task"]["problem"])
+        with urllib.request.urlopen(f"{station.url}api/task", timeout=10) as answer:
+            self.assertEqual(json.load(answer)["name"], "rectangle_long_medium", "the lesson that runs is not disturbed")
+        self.post(f"{station.url}api/setup/save", json.dumps({"task": "square"}).encode(), 200)
 
     def bad_input(self, station):
         mesh = f"{station.url}api/task/mesh?name="
@@ -83,7 +94,6 @@ class NewTaskTest(unittest.TestCase):
             urllib.request.urlopen(request, timeout=5)
         self.assertEqual(refused.exception.code, 403, "another site's page can't change the settings")
         refused.exception.close()
-        # A task that is deleted while it runs: the page goes on, and says so when it is asked for.
         with self.assertRaises(urllib.error.HTTPError) as missing_task:
             urllib.request.urlopen(f"{station.url}api/task/book?name=gone", timeout=5)
         self.assertEqual(missing_task.exception.code, 400)
