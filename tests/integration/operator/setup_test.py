@@ -21,7 +21,13 @@ class Teacher:
 
     def click(self, selector):
         self.page.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector)
-        self.page.click(selector)
+        for attempt in range(5):
+            try:
+                self.page.click(selector)
+                break
+            except RuntimeError as error:  # drawn anew between finding and clicking
+                if "stale" not in str(error) or attempt == 4:
+                    raise
         self.clicks += 1
 
     def wait_for(self, script, seconds=20, *arguments):
@@ -82,7 +88,8 @@ class SetUpTest(unittest.TestCase):
             teacher.click("[data-page='setup']")
             self.set_up(teacher, page, station)
             teacher.click("#setup-next")
-            page.wait_for("return location.hash === '#lesson' && !document.querySelector('#start').hidden", 10)
+            teacher.wait_for("return location.hash === '#lesson' && document.querySelector('#phase').innerText === 'Ready to start'", 30)
+            teacher.wait_for("return document.querySelectorAll('.service').length === 0 || document.querySelector('#health-dot.failed') === null", 30)
             teacher.click("#start")
             teacher.wait_for("return document.querySelectorAll('#acts li').length >= 2", 30)
             teacher.screenshot("lesson")
