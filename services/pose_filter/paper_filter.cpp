@@ -106,8 +106,13 @@ void PaperFilter::TakeImage(const FilterInput& input) {
 void PaperFilter::AssociateAndSteer(const FilterInput& input) {
   const size_t parts = task_.parts.size();
   regions_.assign(parts, {});
-  input_.assign(parts, Vector3::Zero());
+  seen_.assign(parts, std::nullopt);
+  class_map_.clear();
   if (input.detections == nullptr) return;
+  if (options_.colour == ColourUse::kObservation && input.detections->width == camera_.width &&
+      input.detections->height == camera_.height) {
+    class_map_ = input.detections->class_map;
+  }
   std::vector<std::optional<Eigen::Vector2d>> expected(parts);
   for (size_t part = 0; part < parts; ++part) {
     if (known_[part] && base_[part].translation().z() > kNearPlane) {
@@ -120,8 +125,7 @@ void PaperFilter::AssociateAndSteer(const FilterInput& input) {
     const Region& region = input.detections->regions[static_cast<size_t>(regions_[part].region)];
     if (!(region.median_depth > kNearPlane)) continue;
     const Vector3 seen = camera_.BackProject(region.centroid.cast<double>(), region.median_depth);
-    const Vector3 P = seen + SurfaceToOrigin(part);
-    input_[part] = (P - base_[part].translation()) * regions_[part].confidence;
+    seen_[part] = seen + SurfaceToOrigin(part);
   }
 }
 
@@ -199,12 +203,16 @@ void PaperFilter::MovePart(size_t part, double dt) {
   const auto render = [this](Particle& particle, size_t moved) {
     RenderDepth(ShapeOf(moved).mesh, evidence_.grid, PoseOf(particle, moved), particle.tiles[moved]);
   };
+  // [6]
+  Vector3 u = Vector3::Zero();
+  if (options_.colour == ColourUse::kInput && seen_[part])
+    u = (*seen_[part] - base_[part].translation()) * regions_[part].confidence;
   for (size_t i = 0; i < particles_.size(); ++i) {
     Particle& particle = particles_[i];
     const RigidBodies& bodies = bodies_[particle.links];
     if (!bodies.Leads(static_cast<int>(part))) continue;
     Propagate(options_.process, dt, random_, particle.parts[part]);
-    particle.parts[part].q.head<3>() += input_[part];
+    particle.parts[part].q.head<3>() += u;
     render(particle, part);
     for (const auto& follower : bodies.FollowersOf(static_cast<int>(part))) {
       const auto f = static_cast<size_t>(follower.part), l = static_cast<size_t>(follower.leader);
@@ -244,8 +252,35 @@ const RenderedDepth& PaperFilter::Merge(const Particle& particle) {
 }
 
 double PaperFilter::LogLikelihood(const Particle& particle) {
-  const double depth = model_.LogLikelihood(evidence_, Merge(particle), particle.occlusion.data());
-  return AnyOverlap(particle) ? depth + std::log(options_.collision.factor) : depth;
+  const double image =
+      model_.LogLikelihood(evidence_, Merge(particle), particle.occlusion.data()) + ColourLogLikelihood(particle);
+  return AnyOverlap(particle) ? image + std::log(options_.collision.factor) : image;
+}
+
+double PaperFilter::ColourLogLikelihood(const Particle& particle) const {
+  if (class_map_.empty()) return 0;
+  double sum = 0;
+  for (size_t part = 0; part < known_.size(); ++part) {
+    if (!known_[part]) continue;
+    const RenderedDepth& tile = particle.tiles[part];
+    const int bit = 1 << task_.ColourClass(task_.parts[part].type);
+    for (int j = 0; j < tile.area.height; ++j) {
+      const int row = tile.area.y + j;
+      const float* nearest = merged_.row(row - merged_.area.y) + (tile.area.x - merged_.area.x);
+      for (int i = 0; i < tile.area.width; ++i) {
+        if (tile.row(j)[i] >= RenderedDepth::kEmpty || tile.row(j)[i] > nearest[i]) continue;
+        const int column = tile.area.x + i;
+        const bool own = class_map_[static_cast<size_t>(evidence_.grid.ImageY(row)) * camera_.width +
+                                    static_cast<size_t>(evidence_.grid.ImageX(column))] &
+                         bit;
+        const double o = particle.occlusion[static_cast<size_t>(row * evidence_.stride + column)];
+        const double visible = own ? options_.own_colour : 1 - options_.own_colour;
+        const double other = own ? options_.foreign_colour : 1 - options_.foreign_colour;
+        sum += std::log((1 - o) * visible / other + o);
+      }
+    }
+  }
+  return sum;
 }
 
 bool PaperFilter::AnyOverlap(const Particle& particle) const {
@@ -327,6 +362,7 @@ PartEstimate PaperFilter::Describe(size_t part, const Pose& X_TC) {
     covariance += weights_[i] * q * q.transpose();
   }
   estimate.covariance = RotateCovariance(R_TC, covariance);
+  if (options_.colour == ColourUse::kFusedPoses) FuseColour(part, X_TC, estimate);
 
   RenderDepth(ShapeOf(part).mesh, evidence_.grid, base_[part], tile_);
   const PointCounts points = CountPoints(evidence_, tile_);
@@ -343,6 +379,19 @@ PartEstimate PaperFilter::Describe(size_t part, const Pose& X_TC) {
                     : hidden                           ? PartStatus::kOccluded
                                                        : PartStatus::kLost;
   return estimate;
+}
+
+void PaperFilter::FuseColour(size_t part, const Pose& X_TC, PartEstimate& estimate) const {
+  if (!seen_[part] || regions_[part].confidence <= 0) return;
+  // The variance of one particle's spread may be zero: no position is better than a tenth of a millimetre.
+  const Matrix3 S_depth = estimate.covariance.topLeftCorner<3, 3>() + 1e-8 * Matrix3::Identity();
+  const double sigma = options_.colour_position / regions_[part].confidence;
+  const Matrix3 gain = S_depth * (S_depth + sigma * sigma * Matrix3::Identity()).inverse();
+  estimate.X_TP.translation() += gain * (X_TC * *seen_[part] - estimate.X_TP.translation());
+  const Matrix3 left = Matrix3::Identity() - gain;
+  estimate.covariance.topLeftCorner<3, 3>() = left * S_depth;
+  estimate.covariance.topRightCorner<3, 3>() = (left * estimate.covariance.topRightCorner<3, 3>()).eval();
+  estimate.covariance.bottomLeftCorner<3, 3>() = estimate.covariance.topRightCorner<3, 3>().transpose();
 }
 
 }  // namespace coach

@@ -28,12 +28,23 @@
 
 namespace coach {
 
+/// How colour takes part: the paper's choice and the two that its section IV-C weighs against it.
+enum class ColourUse {
+  kInput,        ///< [6]: regions move the particles
+  kObservation,  ///< (i): every predicted point's colour is observed beside its depth
+  kFusedPoses,   ///< (ii): a tracker by depth and one by colour; their positions are averaged by covariance
+};
+
 struct PaperFilterOptions {
   int particles = 200;
   int step = 5;                    ///< px between the points of the image that are compared
   double resample_divergence = 2;  ///< nats, of the weights from uniform ones
   double constraint_cap = 0.6;     ///< of the particles, at most, obey a connection
   double start_interval = 0.5;     ///< s between searches for parts that were never seen
+  ColourUse colour = ColourUse::kInput;
+  double own_colour = 0.9;        ///< kObservation: chance that a point of the part is in its class
+  double foreign_colour = 0.05;   ///< kObservation: chance that another point is
+  double colour_position = 0.01;  ///< m, kFusedPoses: standard deviation of a region's position of confidence 1
   CollisionOptions collision{.allowed = 0, .allowed_connected = 0};
   ProcessOptions process;
   OcclusionChain occlusion;
@@ -76,12 +87,16 @@ class PaperFilter final : public PoseFilter {
   void ChooseLinks();
   void MovePart(size_t part, double dt);
   double LogLikelihood(const Particle& particle);
+  /// Option (i); merged_ is that of the particle.
+  double ColourLogLikelihood(const Particle& particle) const;
   const RenderedDepth& Merge(const Particle& particle);
   bool AnyOverlap(const Particle& particle) const;
   void Resample();
   void Finish();
   PartPoses Output(const FilterInput& input);
   PartEstimate Describe(size_t part, const Pose& X_TC);
+  /// Option (ii).
+  void FuseColour(size_t part, const Pose& X_TC, PartEstimate& estimate) const;
 
   Task task_;
   PaperFilterOptions options_;
@@ -105,7 +120,8 @@ class PaperFilter final : public PoseFilter {
   std::optional<int64_t> last_search_;  ///< utime
   bool started_ = false;
   std::vector<RegionOfPart> regions_;
-  std::vector<Vector3> input_;  ///< u of each part, m, camera frame
+  std::vector<std::optional<Vector3>> seen_;  ///< P of each part, m, camera frame
+  std::vector<uint8_t> class_map_;            ///< of the frame, for option (i); empty: none
   std::vector<RigidLink> links_;
   std::vector<RigidBodies> bodies_;  ///< for each number of links
   RenderedDepth merged_, tile_;

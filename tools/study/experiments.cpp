@@ -13,6 +13,7 @@
 #include "common/assembly/task_file.h"
 #include "tools/evaluate/evaluation.h"
 #include "tools/simulator/scene_recorder.h"
+#include "tools/study/ablation.h"
 #include "tools/study/guidance_study.h"
 #include "tools/study/report_text.h"
 #include "tools/study/study.h"
@@ -374,10 +375,11 @@ const Experiment& FindExperiment(const std::string& name) {
   static const StartStudy start;
   static const Table1Study table1;
   static const GuidanceStudy guidance;
-  for (const Experiment* e : std::initializer_list<const Experiment*>{&fig4, &start, &table1, &guidance}) {
+  static const AblationStudy ablation;
+  for (const Experiment* e : std::initializer_list<const Experiment*>{&fig4, &start, &table1, &guidance, &ablation}) {
     if (e->name() == name) return *e;
   }
-  throw std::invalid_argument("study: found " + name + ", expected fig4, start, table1 or guidance");
+  throw std::invalid_argument("study: found " + name + ", expected fig4, start, table1, guidance or ablation");
 }
 
 }  // namespace coach

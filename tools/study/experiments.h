@@ -1,4 +1,5 @@
-// Experiments on simulated scenes: the paper's Fig. 4, starting from nothing, Table I, and what guidance brings.
+// Experiments on simulated scenes: the paper's Fig. 4, starting from nothing, Table I, what guidance
+// brings, and what each cure of the tracker brings.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +22,7 @@ class Experiment {
  public:
   virtual ~Experiment() = default;
   /// Names carry all that a unit needs: fig4-seed003.
-  std::vector<std::string> Units(int n) const;
+  virtual std::vector<std::string> Units(int n) const;
   virtual std::string name() const = 0;
   /// @throws std::runtime_error if the tracker fails.
   virtual std::string Run(int number, const ExperimentOptions& options) const = 0;
@@ -29,7 +30,7 @@ class Experiment {
   virtual std::string Report(const std::vector<std::string>& results, const std::filesystem::path& folder) const = 0;
 };
 
-/// fig4, start, table1 or guidance. @throws std::invalid_argument for another name.
+/// fig4, start, table1, guidance or ablation. @throws std::invalid_argument for another name.
 const Experiment& FindExperiment(const std::string& name);
 
 }  // namespace coach

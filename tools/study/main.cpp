@@ -17,7 +17,7 @@ int Run(int argc, char** argv) {
   coach::StudyRun run;
   coach::ExperimentOptions options;
   options.tasks = "deploy/tasks";
-  app.add_option("STUDY", name, "fig4, start, table1 or guidance")->required();
+  app.add_option("STUDY", name, "fig4, start, table1, guidance or ablation")->required();
   app.add_option("--out", out, "folder of the results; default: study-STUDY");
   app.add_option("-n,--seeds,--scenes,--lessons", units, "how many")->check(CLI::Range(1, 9999))->capture_default_str();
   app.add_option("--shard", shard, "i/n: only the i-th of n parts; no report");

@@ -16,6 +16,7 @@
 #include "services/detector/hsv_detector.h"
 #include "services/pose_filter/full_filter.h"
 #include "services/pose_filter/paper_filter.h"
+#include "tools/track_sequence/cures.h"
 
 namespace coach {
 namespace {
@@ -96,39 +97,34 @@ std::vector<Pose> TruePoses(const std::filesystem::path& scene, const Task& task
 }
 
 std::unique_ptr<PoseFilter> MakeFilter(const SequenceOptions& options, const Task& task) {
-  if (options.paper) return std::make_unique<PaperFilter>(task, PaperFilterOptions{}, options.seed);
-  return std::make_unique<FullFilter>(task, FullFilterOptions{}, options.seed);
+  if (options.paper) {
+    PaperFilterOptions paper;
+    paper.colour = ColourUseByName(options.paper_colour);
+    return std::make_unique<PaperFilter>(task, paper, options.seed);
+  }
+  FullFilterOptions full;
+  for (const std::string& cure : options.without) full = Without(cure, full);
+  return std::make_unique<FullFilter>(task, full, options.seed);
 }
 
-}  // namespace
+AssemblyReasonerOptions ReasonerOptions(const SequenceOptions& options) {
+  AssemblyReasonerOptions out;
+  out.paper = options.paper;
+  return out;
+}
 
-SequenceSummary TrackSequence(const SequenceOptions& options) {
-  const Task task = LoadTask(options.task);
-  const SceneReader reader(options.scene, {.fps = options.fps, .utime_origin = 0});
-  HsvDetector detector(task);
-  const std::unique_ptr<PoseFilter> filter = MakeFilter(options, task);
-  AssemblyReasonerOptions reasoner_options;
-  reasoner_options.paper = options.paper;
-  AssemblyReasoner reasoner(task, reasoner_options);
-  Results results(options, task, reader);
-  if (options.initial_poses_from_gt) filter->Suggest(TruePoses(options.scene, task, reader.im_id(0)));
+/// One tracker and reasoner on their way through the scene.
+class Run {
+ public:
+  Run(const SequenceOptions& options, const Task& task, const SceneReader& reader)
+      : filter_(MakeFilter(options, task)),
+        reasoner_(task, ReasonerOptions(options)),
+        results_(options, task, reader),
+        observe_(options.observe) {
+    if (options.initial_poses_from_gt) filter_->Suggest(TruePoses(options.scene, task, reader.im_id(0)));
+  }
 
-  SequenceSummary summary;
-  std::vector<double> detector_times, filter_times;
-  ConnectionBelief belief;
-  const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < reader.size(); ++i) {
-    if (options.realtime && i > 0) {
-      // A live camera would be at this frame by now: what has passed is lost.
-      const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const int live = static_cast<int>(now * 1e6 / reader.period_us());
-      summary.dropped += std::max(0, std::min(live, reader.size() - 1) - i);
-      i = std::clamp(live, i, reader.size() - 1);
-    }
-    const Frame frame = reader.Read(i);
-    const double t0 = ProcessorTime();
-    const Detections detections = detector.Detect(frame.colour, frame.depth, frame.metres_per_unit);
-    const double t1 = ProcessorTime();
+  void Step(int im_id, const Frame& frame, const Detections& detections, double detector_time) {
     FilterInput input;
     input.utime = frame.utime;
     input.sequence = frame.sequence;
@@ -137,29 +133,100 @@ SequenceSummary TrackSequence(const SequenceOptions& options) {
     input.metres_per_unit = frame.metres_per_unit;
     input.colour = frame.colour;
     input.detections = &detections;
-    input.belief = &belief;
-    const PartPoses& poses = filter->Step(input);
+    input.belief = &belief_;
+    const double t0 = ProcessorTime();
+    const PartPoses& poses = filter_->Step(input);
+    const double t1 = ProcessorTime();
+    ReasonerOutput reasoned = reasoner_.Step(poses);
     const double t2 = ProcessorTime();
-    ReasonerOutput reasoned = reasoner.Step(poses);
-    const double t3 = ProcessorTime();
-    belief = std::move(reasoned.belief);
-    if (options.observe) options.observe(poses);
-    detector_times.push_back(t1 - t0);
-    filter_times.push_back(t2 - t1);
-    const int im_id = reader.im_id(i);
-    results.Write(im_id, poses);
-    results.Write(im_id, "detector", t1 - t0);
-    results.Write(im_id, "pose_filter", t2 - t1);
-    results.Write(im_id, "assembly_reasoner", t3 - t2);
-    for (const ConnectionEvent& e : reasoned.events) results.Write(e);
-    summary.events += static_cast<int>(reasoned.events.size());
-    ++summary.frames;
+    belief_ = std::move(reasoned.belief);
+    if (observe_) observe_(poses);
+    detector_times_.push_back(detector_time);
+    filter_times_.push_back(t1 - t0);
+    results_.Write(im_id, poses);
+    results_.Write(im_id, "detector", detector_time);
+    results_.Write(im_id, "pose_filter", t1 - t0);
+    results_.Write(im_id, "assembly_reasoner", t2 - t1);
+    for (const ConnectionEvent& e : reasoned.events) results_.Write(e);
+    events_ += static_cast<int>(reasoned.events.size());
   }
-  summary.detector_median = Percentile(detector_times, 0.5);
-  summary.detector_p99 = Percentile(detector_times, 0.99);
-  summary.filter_median = Percentile(filter_times, 0.5);
-  summary.filter_p99 = Percentile(filter_times, 0.99);
-  return summary;
+
+  SequenceSummary Summary(int dropped) const {
+    SequenceSummary s;
+    s.frames = static_cast<int>(filter_times_.size());
+    s.dropped = dropped;
+    s.events = events_;
+    s.detector_median = Percentile(detector_times_, 0.5);
+    s.detector_p99 = Percentile(detector_times_, 0.99);
+    s.filter_median = Percentile(filter_times_, 0.5);
+    s.filter_p99 = Percentile(filter_times_, 0.99);
+    return s;
+  }
+
+ private:
+  std::unique_ptr<PoseFilter> filter_;
+  AssemblyReasoner reasoner_;
+  Results results_;
+  std::function<void(const PartPoses&)> observe_;
+  ConnectionBelief belief_;
+  std::vector<double> detector_times_, filter_times_;
+  int events_ = 0;
+};
+
+/// Scene, task, frame rate and `realtime` are those of the first.
+std::vector<SequenceSummary> TrackTogether(const std::vector<SequenceOptions>& all) {
+  if (all.empty()) return {};
+  const SequenceOptions& first = all.front();
+  const Task task = LoadTask(first.task);
+  const SceneReader reader(first.scene, {.fps = first.fps, .utime_origin = 0});
+  HsvDetector detector(task);
+  std::vector<std::unique_ptr<Run>> runs;
+  for (const SequenceOptions& options : all) runs.push_back(std::make_unique<Run>(options, task, reader));
+  int dropped = 0;
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < reader.size(); ++i) {
+    if (first.realtime && i > 0) {
+      // A live camera would be at this frame by now: what has passed is lost.
+      const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const int live = static_cast<int>(now * 1e6 / reader.period_us());
+      dropped += std::max(0, std::min(live, reader.size() - 1) - i);
+      i = std::clamp(live, i, reader.size() - 1);
+    }
+    const Frame frame = reader.Read(i);
+    const double t0 = ProcessorTime();
+    const Detections detections = detector.Detect(frame.colour, frame.depth, frame.metres_per_unit);
+    const double detector_time = ProcessorTime() - t0;
+    for (const auto& run : runs) run->Step(reader.im_id(i), frame, detections, detector_time);
+  }
+  std::vector<SequenceSummary> summaries;
+  for (const auto& run : runs) summaries.push_back(run->Summary(dropped));
+  return summaries;
+}
+
+}  // namespace
+
+SequenceSummary TrackSequence(const SequenceOptions& options) { return TrackTogether({options}).front(); }
+
+void TrackVariants(const SequenceOptions& options, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::vector<SequenceOptions> runs;
+  const auto add = [&](const std::string& name, SequenceOptions run) {
+    run.poses = folder / (name + "_poses.csv"), run.states = folder / (name + "_states.csv");
+    run.events = folder / (name + "_events.csv"), run.timings = folder / (name + "_timings.csv");
+    runs.push_back(std::move(run));
+  };
+  SequenceOptions full = options, paper = options;
+  full.paper = false, full.without.clear(), paper.paper = true;
+  add("full", full);
+  for (const std::string& cure : CureNames()) {
+    full.without = {cure};
+    add("full-without-" + cure, full);
+  }
+  for (const std::string colour : {"input", "observation", "fused"}) {
+    paper.paper_colour = colour;
+    add(colour == "input" ? "paper" : "paper-" + colour, paper);
+  }
+  TrackTogether(runs);
 }
 
 }  // namespace coach
