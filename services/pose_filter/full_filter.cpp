@@ -249,9 +249,10 @@ double FullFilter::CollisionCost(int part, const PoseCandidate& candidate) const
   const Pose X_TP = camera_.X_TC() * candidate.X_CP;
   double overlap = 0;
   for (size_t k = 0; k < tracks_.size(); ++k) {
-    // What is joined overlaps a little, as measured; how the two lie to each other the link says better.
-    if (static_cast<int>(k) == part || tracks_[k].missing() || Linked(part, static_cast<int>(k))) continue;
-    overlap += pairs_.Overlap(part, X_TP, static_cast<int>(k), tracks_[k].X_TP, options_.allowed_overlap);
+    // What is joined overlaps a little, as measured.
+    const int other = static_cast<int>(k);
+    if (other == part || tracks_[k].missing() || InJoint(part, X_TP, other)) continue;
+    overlap += pairs_.Overlap(part, X_TP, other, tracks_[k].X_TP, options_.allowed_overlap);
   }
   return std::min(1.0, overlap / options_.full_overlap) * options_.collision_cost *
          std::abs(candidate.score.log_likelihood);

@@ -27,6 +27,7 @@ struct FullFilterOptions {
   double link_position = 0.0015;  ///< m, play of a link
   double link_rotation = 0.015;   ///< rad
   double link_rest = 0.01;        ///< m in a frame; a partner that moved farther says nothing of an empty place
+  double link_overlap = 0.012;    ///< m from the joint (a radian counting as 5 cm), up to which overlap is allowed
   double link_reach = 0.015;      ///< m, from where a partner expects a part, that costs as much as a jump
   double link_turn = 0.2;         ///< rad
   /// Of the likelihood, for a pose one reach (3 cm and more) or turn (0.4 rad) from the expected one; grows with the
@@ -42,6 +43,9 @@ struct FullFilterOptions {
   double least_jump_cost = 150;    ///< nats
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
+  int relocation_period = 5;         ///< frames between two looks at unexplained colour while all parts are seen
+  double relocation_ratio = 1.3;     ///< by which a seen part must explain the image better elsewhere
+  double relocation_visible = 0.6;   ///< visible share from which on a part is left where it is
   int surface_search_period = 5;     ///< frames between two searches of things on the table; 0: none
   double surface_own_colour = 0.35;  ///< share of a thing's pixels that must be in the part's class,
   double surface_good_colour = 0.7;  ///< from which on the part is followed by colour too
@@ -98,7 +102,8 @@ class FullFilter final : public PoseFilter {
   /// Equation [5] as a cost (nats) instead of a factor: measured poses of parts in contact overlap a little.
   double CollisionCost(int part, const PoseCandidate& candidate) const;
   void UpdateLinks(const FilterInput& input);
-  bool Linked(int part, int other) const;
+  /// Whether a pose of a part is that of its link with another one.
+  bool InJoint(int part, const Pose& X_TP, int other) const;
   /// Forgets how a part is linked where a partner at rest would have it and the image shows it is not, whatever the
   /// reasoner still believes.
   void DropEmptyLinks(int part, const Observation& observation);
@@ -117,6 +122,8 @@ class FullFilter final : public PoseFilter {
   bool InReach(const Vector3& p_T) const;
   bool Plausible(int part, const PoseCandidate& found, bool distractor) const;
   void Recover(const Observation& observation);
+  /// Where a part's colour lies unexplained while all are seen, the least visible one of that colour may be there.
+  void Relocate(const std::vector<Blob>& blobs, const Observation& observation);
   /// Looks for a part that its colour did not show among the things that stand on the table.
   void FindOnTable(const Observation& observation);
   void Place(int part, const Observation& observation);

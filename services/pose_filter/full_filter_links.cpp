@@ -48,10 +48,14 @@ void FullFilter::DropEmptyLinks(int part, const Observation& observation) {
   }
 }
 
-bool FullFilter::Linked(int part, int other) const {
-  return std::any_of(links_.begin(), links_.end(), [&](const Link& link) {
-    return link.known && std::minmax(link.part_a, link.part_b) == std::minmax(part, other);
-  });
+bool FullFilter::InJoint(int part, const Pose& X_TP, int other) const {
+  for (const Link& link : links_) {
+    if (!link.known || std::minmax(link.part_a, link.part_b) != std::minmax(part, other)) continue;
+    const Pose& X_TA = link.part_a == part ? X_TP : tracks_[link.part_a].X_TP;
+    const Pose& X_TB = link.part_a == part ? tracks_[link.part_b].X_TP : X_TP;
+    if (StepLength(Difference(link.X_AB, X_TA.inverse() * X_TB), 0.05) < options_.link_overlap) return true;
+  }
+  return false;
 }
 
 std::optional<Pose> FullFilter::CarriedBy(int part, Matrix6& covariance) const {

@@ -94,9 +94,10 @@ void FullFilter::Recover(const Observation& observation) {
   if (!observation.class_map || !observation.depth) return;
   const bool any = std::any_of(tracks_.begin(), tracks_.end(), [](const Track& t) { return t.missing(); });
   if (!any) {
-    if (steps_ % 5 == 0) {
+    if (steps_ % options_.relocation_period == 0) {
       const auto& blobs =
           blob_finder_.FindUnexplained(observation, owners_, class_of_part_, num_classes_, camera_.X_TC(), area_);
+      Relocate(blobs, observation);
       distractors_.Remember(blobs, camera_.X_TC());
     }
     return;
@@ -155,6 +156,29 @@ void FullFilter::Recover(const Observation& observation) {
     Restart(best, camera_.X_TC(), tracks_[chosen]);
     Place(chosen, observation);
   }
+}
+
+void FullFilter::Relocate(const std::vector<Blob>& blobs, const Observation& observation) {
+  if (blobs.empty()) return;
+  // One search a time: each blob has its turn.
+  const Blob& blob = blobs[static_cast<size_t>(steps_ / options_.relocation_period) % blobs.size()];
+  if (distractors_.Known(blob, camera_.X_TC())) return;
+  int chosen = -1;
+  double least = options_.relocation_visible;
+  for (size_t k = 0; k < tracks_.size(); ++k) {
+    if (class_of_part_[k] != blob.colour_class || tracks_[k].visible_fraction >= least) continue;
+    least = tracks_[k].visible_fraction;
+    chosen = static_cast<int>(k);
+  }
+  if (chosen < 0) return;
+  const Pose former = camera_.X_TC().inverse() * tracks_[chosen].X_TP;
+  const auto found = SearchPose(ShapeOf(chosen).model, ShapeOf(chosen).search_points, observation, owners_, chosen,
+                                bit_of_part_[chosen], blob, camera_.X_TC(), options_.search, &former, scratch_);
+  if (!found || !Plausible(chosen, *found, false)) return;
+  const double least_likelihood = options_.relocation_ratio * tracks_[chosen].log_likelihood + options_.relocation_gain;
+  if (found->score.log_likelihood < least_likelihood) return;
+  Restart(*found, camera_.X_TC(), tracks_[chosen]);
+  Place(chosen, observation);
 }
 
 void FullFilter::FindOnTable(const Observation& observation) {

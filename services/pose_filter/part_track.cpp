@@ -23,6 +23,7 @@ void Describe(const PoseCandidate& candidate, Track& track) {
   track.visible_fraction = VisibleFraction(candidate);
   track.confidence = Confidence(candidate.score);
   track.pixels = candidate.pixels;
+  track.log_likelihood = candidate.score.log_likelihood;
 }
 
 constexpr double kLongestPrediction = 0.2;  // s; hands don't keep their way for longer

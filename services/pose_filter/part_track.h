@@ -37,8 +37,9 @@ struct Track {
   Matrix6 covariance = Matrix6::Identity() * 0.25;  ///< of X_TP, without the published floor
   double visible_fraction = 0;
   double confidence = 0;
-  int pixels = 0;            ///< px of the last fit
-  std::vector<float> rival;  ///< how long and how much each near symmetry has been better; 0: never
+  int pixels = 0;             ///< px of the last fit
+  double log_likelihood = 0;  ///< nats, of the last fit
+  std::vector<float> rival;   ///< how long and how much each near symmetry has been better; 0: never
   int next_rival = 0;
   double seen_for = 0;    ///< s without a break
   bool by_depth = false;  ///< its colour is not to be relied on: found and followed by depth alone

@@ -152,6 +152,8 @@ std::optional<PoseCandidate> SearchPose(const PartModel& model, const PointSet& 
       if (c.score.log_likelihood > enough && turned(c) < turned(best)) best = c;
     }
   }
+  // Without an outline a sleeve of the part's colour at the image's border is as good as the part.
+  if (observation.class_map && best.evidence.contour_judged < options.least_judged) return std::nullopt;
   if (!Acceptable(best, options)) return std::nullopt;
   return best;
 }

@@ -18,6 +18,7 @@ struct PoseSearchOptions {
   double least_agreement = 0.6;    ///< Score::agreement of an accepted pose
   double almost_as_likely = 0.92;  ///< of the best log-likelihood: such poses are told apart by what was known before
   double least_outline = 0.72;     ///< PoseCandidate::outline_support of an accepted pose
+  int least_judged = 8;            ///< outline points that must be open to judgement, if there is colour
   double largest_chi2 = 3.0;       ///< PoseEquations::depth_chi2 of an accepted pose
   bool contour = true;             ///< the outline helps to refine
   double least_visible = 0.2;      ///< share of the silhouette that must be open
