@@ -40,6 +40,7 @@ struct FullFilterOptions {
   double allowed_overlap = 0.004;  ///< m, measured poses of touching parts overlap
   double full_overlap = 0.05;      ///< share of the surface inside the other part that costs all of it
   double follow_agreement = 0.75;  ///< of a prediction, below which the body is looked for around it
+  double follow_gain = 2;          ///< by which a body must explain the image better there than at its prediction
   double least_jump_cost = 150;    ///< nats
   double relocation_gain =
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed

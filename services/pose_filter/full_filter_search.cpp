@@ -49,9 +49,13 @@ void FullFilter::FollowBodies(const Observation& observation, double dt) {
     for (const RigidMember& m : body) score += at_prediction(m.part);
     if (!astray(score)) continue;
     for (const RigidMember& m : body) owners_.Remove(m.part, tiles_[m.part]);
+    // What the prediction explains must be explained better elsewhere: a sleeve of the part's colour is larger than
+    // what a hand leaves of the part.
+    BodySearchOptions search = options_.body;
+    search.far_likelihood = options_.follow_gain * std::max(0.0, score.log_likelihood);
     const std::optional<Pose> X_CG =
         SearchBody(body, observation, owners_, X_CT * PredictPose(tracks_[body.front().part], dt), X_CT.linear().col(2),
-                   dt, options_.body, scratch_);
+                   dt, search, scratch_);
     for (const RigidMember& m : body) {
       if (X_CG) {
         followed_[m.part] = camera_.X_TC() * *X_CG * m.X_GP;

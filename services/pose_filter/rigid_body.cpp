@@ -252,6 +252,8 @@ std::optional<Pose> SearchBody(const RigidBody& body, const Observation& o, cons
     const Pose X = RefineBody(body, o, owners, start.X_CG, options.refinement, scratch);
     const Score score = ScoreBody(body, o, owners, X, scratch);
     if (score.agreement() < options.least_agreement || score.log_likelihood <= best_likelihood) continue;
+    const bool far = (X.translation() - X_CG.translation()).norm() > options.far;
+    if (far && score.log_likelihood <= options.far_likelihood) continue;
     best_likelihood = score.log_likelihood;
     best = X;
     if (score.agreement() > options.sure_agreement) break;

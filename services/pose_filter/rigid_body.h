@@ -31,6 +31,8 @@ struct BodySearchOptions {
   int scored = 24;                ///< best shifts that are scored with depth
   int refined = 4;                ///< best of those that are refined
   double sure_agreement = 0.85;   ///< Score::agreement of a pose after which no other is tried
+  double far = 0.08;              ///< m; a pose farther off must exceed
+  double far_likelihood = 0;      ///< so many nats
   double least_agreement = 0.45;  ///< Score::agreement of a pose that is believed
   RefinementOptions refinement{.first_half_length = 14, .first_gate = 0.05};
 };
