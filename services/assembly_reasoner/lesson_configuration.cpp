@@ -60,6 +60,7 @@ void ReadResponses(const YamlNode& node, ResponseOptions& o) {
   number("lost_gap", o.lost_gap, 5, 3600);
   number("repair_window", o.repair_window, 0, 60);
   number("moving_speed", o.moving_speed, 0.005, 1);
+  number("hand_time", o.hand_time, 0, 2);
   number("still_time", o.still_time, 0, 10);
   if (const auto idle = node.Find("idle")) {
     const auto seconds = idle->As<std::vector<double>>();

@@ -103,17 +103,27 @@ void ResponsePolicy::OfferStep(const std::string& key, Priority priority, bool s
 }
 
 void ResponsePolicy::NoteMovement(const LessonView& view) {
-  bool moving = false;
-  for (const ForeignBlob& blob : view.poses->foreign) moving |= blob.velocity.norm() > options_.moving_speed;
-  for (const PartEstimate& part : view.poses->parts) {
-    const bool seen = part.status == PartStatus::kTracked;
-    moving |= seen && part.velocity.head<3>().norm() > options_.moving_speed;
-  }
-  if (moving || last_movement_ == 0) last_movement_ = view.now;
+  const auto moves = [&](const Vector3& velocity) { return velocity.norm() > options_.moving_speed; };
+  const auto& parts = view.poses->parts;
+  const auto& foreign = view.poses->foreign;
+  const bool part = std::any_of(parts.begin(), parts.end(), [&](const PartEstimate& p) {
+    return p.status == PartStatus::kTracked && moves(p.velocity.head<3>());
+  });
+  const bool hand =
+      std::any_of(foreign.begin(), foreign.end(), [&](const ForeignBlob& blob) { return moves(blob.velocity); });
+  if (!hand) hands_since_ = 0;
+  if (hand && hands_since_ == 0) hands_since_ = view.now;
+  const bool hand_lasts = hand && Seconds(hands_since_, view.now) >= options_.hand_time;
+  if (part || last_part_movement_ == 0) last_part_movement_ = view.now;
+  if (part || hand_lasts || last_movement_ == 0) last_movement_ = view.now;
 }
 
 bool ResponsePolicy::Still(const LessonView& view) const {
   return Seconds(last_movement_, view.now) >= options_.still_time;
+}
+
+bool ResponsePolicy::PartsStill(const LessonView& view) const {
+  return Seconds(last_part_movement_, view.now) >= options_.still_time;
 }
 
 void ResponsePolicy::NoteSight(const LessonView& view) {
@@ -193,7 +203,7 @@ void ResponsePolicy::Correct(const LessonView& view) {
   const double p = belief.ProbabilityOf(wrong->part_a, wrong->part_b, wrong->label);
   const double right = belief.BestRight(wrong->part_a, wrong->part_b, wrong->label);
   Correction& correction = corrections_[name];
-  const bool sure = p >= options_.correct_probability && p - right >= options_.correct_margin && Still(view);
+  const bool sure = p >= options_.correct_probability && p - right >= options_.correct_margin && PartsStill(view);
   if (!sure) {
     correction.wrong_since = 0;
     return;

@@ -34,7 +34,8 @@ struct ResponseOptions {
   double lost_gap = 60;        ///< s between two sayings of it
   double repair_window = 15;   ///< s after a correction in which it is taken back if it was wrong
   double moving_speed = 0.05;  ///< m/s from which on a part or a hand counts as moving
-  double still_time = 0.7;     ///< s without movement after which parts are still
+  double hand_time = 0.3;      ///< s that a hand's movement has to last: the seen part of a resting arm jitters
+  double still_time = 0.7;     ///< s without movement after which parts, or parts and hands, are still
 };
 
 /// What the policy looks at.
@@ -106,6 +107,7 @@ class ResponsePolicy {
   std::string IdleKey(int level, const LessonView& view) const;
   const BelievedJoint* WorstWrong(const LessonView& view) const;
   bool Still(const LessonView& view) const;
+  bool PartsStill(const LessonView& view) const;
   void Log(const std::string& kind, const std::string& subject, const std::string& reason, int part_a = -1,
            int part_b = -1, double probability = 0);
 
@@ -115,8 +117,8 @@ class ResponsePolicy {
   bool begun_ = false, introduced_ = false, announced_ = false, help_ = false;
   std::ptrdiff_t made_before_ = 0;  // connections made when the present step began
   int step_ = -1, idle_level_ = 0, repairs_ = 0;
-  int64_t now_ = 0, last_movement_ = 0, quiet_ = 0, last_step_ = 0, hidden_since_ = 0, last_lost_ = 0, doubt_since_ = 0,
-          last_hedge_ = 0;
+  int64_t now_ = 0, last_movement_ = 0, last_part_movement_ = 0, hands_since_ = 0, quiet_ = 0, last_step_ = 0,
+          hidden_since_ = 0, last_lost_ = 0, doubt_since_ = 0, last_hedge_ = 0;
   std::map<std::pair<int, int>, int64_t> to_praise_;  // pair -> us when it was decided
   std::map<JointName, Correction> corrections_;
   std::map<JointName, int> corrections_said_;

@@ -43,12 +43,12 @@ class OpenNi : public testing::Test {
     return -1;
   }
 
-  /// Records both streams of the camera.
-  void Record(const std::string& file, int frames) const {
+  /// Records both streams of a camera.
+  static void Record(const std::string& uri, const std::string& file, int frames) {
     ASSERT_EQ(openni::OpenNI::initialize(), openni::STATUS_OK);
     {
       openni::Device device;
-      ASSERT_EQ(device.open(Uri().c_str()), openni::STATUS_OK) << openni::OpenNI::getExtendedError();
+      ASSERT_EQ(device.open(uri.c_str()), openni::STATUS_OK) << openni::OpenNI::getExtendedError();
       openni::VideoStream depth, colour;
       ASSERT_EQ(depth.create(device, openni::SENSOR_DEPTH), openni::STATUS_OK);
       ASSERT_EQ(colour.create(device, openni::SENSOR_COLOR), openni::STATUS_OK);
@@ -107,7 +107,7 @@ TEST_F(OpenNi, ACameraThatIsNotThereIsLostNotAFailure) {
 }
 
 TEST_F(OpenNi, ARecordingOfTheCameraPlaysThroughCapture) {
-  Record(Path("lesson.oni"), 25);
+  Record(Uri(), Path("lesson.oni"), 25);
   for (const std::string run : {"1", "2"}) {
     Process capture({Program("coach-capture"), "--station", "S", "--source", "oni:" + Path("lesson.oni"), "--lockstep",
                      "--output-url", "file://" + Path(run + ".lcm") + "?mode=w"});
@@ -161,6 +161,38 @@ TEST_F(OpenNi, AChildAtATableIsACamera) {
   setenv("COACH_OPENNI2_CHILD", "obeys", 1);
   EXPECT_THROW(OpenOpenNiDevice("coach-child:" + Path("station.yaml"), options), SourceLost);
   unsetenv("COACH_OPENNI2_CHILD");
+}
+
+TEST_F(OpenNi, ALiveChildIsRecordedAndPlayedThroughCapture) {
+  std::ofstream(Path("station.yaml")) << "station: S\nbus: {table: 'memq://'}\ntask: " COACH_SOURCE_DIR
+                                         "/deploy/tasks/rectangle_long_medium.yaml\n";
+  setenv("COACH_OPENNI2_CHILD", "never-listens", 1);
+  Record("coach-child:" + Path("station.yaml"), Path("child.oni"), 15);
+  unsetenv("COACH_OPENNI2_CHILD");
+  Process capture({Program("coach-capture"), "--station", "S", "--source", "oni:" + Path("child.oni"), "--lockstep",
+                   "--output-url", "file://" + Path("child.lcm") + "?mode=w"});
+  ASSERT_EQ(capture.Wait(20), 0) << capture.output();
+  Bus reader("file://" + Path("child.lcm") + "?speed=0", "S");
+  int played = 0;
+  int64_t last = -1;
+  std::vector<cv::Mat> depth;
+  reader.Subscribe<depth_image_t>([&](const depth_image_t& m) {
+    EXPECT_GT(m.utime, last);
+    last = m.utime;
+    depth.push_back(FromMessage(m).depth);
+  });
+  reader.Subscribe<color_image_t>([&](const color_image_t& m) {
+    ++played;
+    EXPECT_EQ(m.intrinsics.width, 640);
+    EXPECT_EQ(m.intrinsics.height, 480);
+  });
+  while (reader.Handle(100) >= 0) {
+  }
+  EXPECT_EQ(reader.errors(), 0);
+  ASSERT_GE(depth.size(), 12U);
+  EXPECT_EQ(played, static_cast<int>(depth.size()));
+  EXPECT_GT(cv::countNonZero(depth.back()), 640 * 480 / 2);
+  EXPECT_GT(cv::norm(depth.front(), depth.back(), cv::NORM_L1), 0) << "a camera that lives";
 }
 
 TEST_F(OpenNi, AnUnpluggedCameraIsFoundAgain) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <random>
 #include <set>
@@ -75,6 +76,7 @@ class Classroom {
   std::vector<Said> said;
   std::vector<GuidanceEvent> events;
   bool moving = false, hidden = false, robot_reports = true;
+  std::function<double(int64_t)> hand_speed = [](int64_t) { return 0.0; };  // m/s at a time in us
   int64_t now() const { return now_; }
   int64_t restarted() const { return restarted_; }
   const AssemblyState& state() const { return state_; }
@@ -125,6 +127,7 @@ class Classroom {
     };
     PartPoses poses;
     poses.utime = now_;
+    poses.foreign.push_back({.velocity = Vector3(hand_speed(now_), 0, 0)});
     std::vector<Pose> X(4, Pose::Identity());
     std::vector<bool> placed(4, false);
     for (int p = 0; p < 4; ++p) {
@@ -230,6 +233,28 @@ TEST(Lesson, HintsClimbTheLadderAndTheClockStopsWhileSomethingMoves) {
   room.moving = true;
   room.Run(1);
   EXPECT_EQ(room.state().phase, Phase::kWait);
+}
+
+TEST(Lesson, RestingArmsThatJitterHoldNothingUp) {
+  Classroom room(12);
+  room.hand_speed = [](int64_t now) { return now / 200000 % 3 == 0 ? 0.2 : 0.01; };
+  room.Operator(OperatorKind::kStart);
+  room.Run(45);
+  EXPECT_EQ(room.Count("idle_1"), 1);
+  room.Join(0, 1, Rectangle().mistakes[0].X_AB);
+  room.Run(10);
+  EXPECT_EQ(room.Count("wrong"), 1);
+}
+
+TEST(Lesson, MovingHandsHoldHintsUpButNoCorrection) {
+  Classroom room(13);
+  room.hand_speed = [](int64_t) { return 0.3; };
+  room.Operator(OperatorKind::kStart);
+  room.Run(60);
+  EXPECT_EQ(room.Count("idle_1"), 0);
+  room.Join(0, 1, Rectangle().mistakes[0].X_AB);
+  room.Run(10);
+  EXPECT_EQ(room.Count("wrong"), 1);
 }
 
 TEST(Lesson, HelpIsGivenAtOnce) {
