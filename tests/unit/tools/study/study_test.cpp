@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "tools/study/experiments.h"
+#include "tools/study/ablation.h"
 
 namespace coach {
 namespace {
@@ -69,6 +69,32 @@ TEST_F(StudyTest, AFailedUnitIsReportedAndMissing) {
   std::vector<std::string> missing;
   EXPECT_EQ(ReadUnits(folder_, units_, &missing).size(), 9u);
   EXPECT_THAT(missing, testing::ElementsAre("start-0002"));
+}
+
+TEST_F(StudyTest, TheAblationAddsRunsUpAndKeepsHeldBackScenesApart) {
+  const Experiment& ablation = FindExperiment("ablation");
+  const size_t scenes = AblationScenes().size();
+  EXPECT_GE(scenes, 12u);
+  const auto units = ablation.Units(3);
+  EXPECT_EQ(units.size(), 3 * scenes);
+  EXPECT_EQ(std::set<std::string>(units.begin(), units.end()).size(), units.size());
+  EXPECT_EQ(std::count_if(AblationScenes().begin(), AblationScenes().end(), [](const auto& s) { return s.held_back; }),
+            static_cast<long>(scenes / 2));
+  const auto unit = [](const std::string& scene, bool held_back, double position, int good) {
+    return R"({"scene":")" + scene + R"(","held_back":)" + (held_back ? "true" : "false") +
+           R"(,"seed":1,"frames":100,"parts":2,"truth":"abc","rows":{"full":{"position":)" + std::to_string(position) +
+           R"(,"rotation":1,"judged":200,"good":)" + std::to_string(good) +
+           R"(,"losses":1,"lost_seconds":0.5,"reappearances":2,"recovered":1,"swap_seconds":0.6,"tracked":100,)"
+           R"("wrong":2,"ms":2}}})";
+  };
+  std::filesystem::create_directories(folder_);
+  const std::string md = ablation.Report(
+      {unit("hidden_still", false, 1, 200), unit("hidden_still", false, 2, 100), unit("fast", true, 9, 0)}, folder_);
+  EXPECT_THAT(md, HasSubstr("| full | 1.50 | 1.00 | 75.0 | 2 (1.0) | 2/4 | 2 | 2.00 | 2.00 |"));
+  EXPECT_THAT(md, HasSubstr("Scenes held back"));
+  EXPECT_THAT(md, HasSubstr("| full | 9.00 | 1.00 | 0.0 | 1 (0.5) | 1/2 | 1 | 2.00 | 2.00 |"));
+  EXPECT_THAT(md, HasSubstr("| fast (held back) | car, hasty, 105 | 100 | 2 | `abc` |"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "ablation.csv"));
 }
 
 TEST(ShardTest, TextIsChecked) {
