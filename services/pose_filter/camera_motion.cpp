@@ -86,7 +86,7 @@ void CameraMotion::AddMarks(const Observation& o, const OwnerMap* owners) {
           const float gx = 0.5f * (o.Grey(x + 1, y) - o.Grey(x - 1, y)),
                       gy = 0.5f * (o.Grey(x, y + 1) - o.Grey(x, y - 1));
           const float g = std::sqrt(gx * gx + gy * gy);
-          if (g > best.gradient) best = {x, y, o.Grey(x, y), g, Vector3::Zero()};
+          if (g > best.gradient) best = {x, y, o.Grey(x, y), gx, gy, g, Vector3::Zero()};
         }
       }
       if (best.gradient < options_.least_gradient) continue;
@@ -111,7 +111,15 @@ bool CameraMotion::StoodStill(const Observation& o) const {
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
   const float drift = sorted[sorted.size() / 2];  // exposure and white balance
   size_t same = 0;
-  for (size_t i = 0; i < marks_.size(); ++i) same += std::abs(changes_[i] - drift) < 5.0f + 0.25f * marks_[i].gradient;
+  for (size_t i = 0; i < marks_.size(); ++i) {
+    const Mark& m = marks_[i];
+    if (std::abs(changes_[i] - drift) >= 5.0f + 0.25f * m.gradient) continue;
+    // The gradient too: on a speckled table all marks are darker than what moves into their place, and that looks like
+    // a change of exposure.
+    const float gx = 0.5f * (o.Grey(m.x + 1, m.y) - o.Grey(m.x - 1, m.y)),
+                gy = 0.5f * (o.Grey(m.x, m.y + 1) - o.Grey(m.x, m.y - 1));
+    same += gx * m.gx + gy * m.gy > 0.5f * m.gradient * m.gradient;
+  }
   return static_cast<double>(same) > options_.still_share * static_cast<double>(marks_.size());
 }
 

@@ -52,7 +52,8 @@ class CameraMotion {
   struct Mark {
     int x = 0, y = 0;  // px in the keyframe
     float grey = 0;
-    float gradient = 0;  // per px
+    float gx = 0, gy = 0;  // grey levels a px
+    float gradient = 0;    // their length
     Vector3 p_T;
   };
   void AddMarks(const Observation& observation, const OwnerMap* owners);

@@ -101,6 +101,39 @@ TEST_F(CameraMotionTest, AJoltOfTwoCentimetres) {
   EXPECT_LT(AngleError(motion.X_TC(), truth), 0.15 * kDegree);
 }
 
+// Dark speckles all over: nearly every mark of strong gradient is darker than what a moved camera shows in its place.
+TEST_F(CameraMotionTest, AJoltOverASpeckledTableIsNoticed) {
+  const auto speckled = [&](const Pose& X_CT, uint64_t seed) {
+    DrawnObservation drawn = Draw(X_CT, seed);
+    std::vector<Pose> X_CP;
+    for (const Pose& X_TP : boxes_) X_CP.push_back(X_CT * X_TP);
+    const cv::Mat exact = DrawScene(task_, X_CP, seed, 0, 0, 0, 0.4, X_CT).depth;
+    for (int y = 0; y < 480; ++y) {
+      for (int x = 0; x < 640; ++x) {
+        const Vector3 p =
+            X_CT.inverse() * TestCamera().BackProject(Eigen::Vector2d(x, y), 1e-3 * exact.at<uint16_t>(y, x));
+        const auto cell = static_cast<uint32_t>(static_cast<int>(std::floor(p.x() / 0.004)) * 73856093) ^
+                          static_cast<uint32_t>(static_cast<int>(std::floor(p.y() / 0.004)) * 19349663);
+        const uint8_t grey = cell * 2654435761u >> 29 == 0 ? 130 : 150;
+        drawn.picture.colour.at<cv::Vec3b>(y, x) = {grey, grey, grey};
+      }
+    }
+    return drawn;
+  };
+  CameraMotion motion;
+  const DrawnObservation first = speckled(TestTable(), 0);
+  const auto table = FindTable(first.View(), 1);
+  ASSERT_TRUE(table);
+  motion.Start(first.View(), *table);
+  Vector6 xi;
+  xi << 0.015, -0.01, 0.008, 1 * kDegree, -1 * kDegree, 1 * kDegree;
+  const Pose X_CT = Perturb(TestTable(), xi), truth = Truth(motion.X_TC(), X_CT);
+  motion.Step(speckled(X_CT, 1).View(), none_);
+  EXPECT_GT(motion.step().translation().norm(), 0.005);
+  // Along the table brightness alone tells, and one speckle looks like the next; its height and tilt are known.
+  EXPECT_LT(std::abs(motion.X_TC().translation().z() - truth.translation().z()), 0.001);
+}
+
 TEST_F(CameraMotionTest, AStillCameraStaysStillExactly) {
   CameraMotion motion;
   Start(motion);
