@@ -84,10 +84,11 @@ struct AssemblyReasoner::Impl {
 
 void AssemblyReasoner::Impl::Observe(const PartPoses& poses) {
   std::map<PairKey, const PairEvidence*> given;
-  std::vector<bool> misfit(task.parts.size(), false);
+  std::vector<bool> misfit(task.parts.size(), false), pressed(task.parts.size(), false);
   for (const PairEvidence& pair : poses.pairs) {
     given[{pair.part_a, pair.part_b}] = &pair;
     if (pair.surface_distance < -options.deepest_overlap) misfit[pair.part_a] = misfit[pair.part_b] = true;
+    if (pair.surface_distance < -options.break_overlap) pressed[pair.part_a] = pressed[pair.part_b] = true;
   }
   const std::vector<PairEvidence> inferred = options.paper ? std::vector<PairEvidence>{} : hidden.Infer(poses);
   for (const PairEvidence& pair : inferred) given.try_emplace({pair.part_a, pair.part_b}, &pair);
@@ -101,6 +102,7 @@ void AssemblyReasoner::Impl::Observe(const PartPoses& poses) {
       if (classes.empty() && view.evidence == nullptr) continue;
       view.inferred = !inferred.empty() && view.evidence >= &inferred.front() && view.evidence <= &inferred.back();
       view.misfit = misfit[a] || misfit[b];
+      view.pressed = pressed[a] || pressed[b];
       const auto joint = Find({a, b});
       view.decided = joint == joints.end() ? kOpenLabel : joint->label;
       std::vector<bool> is_connection;
@@ -407,6 +409,10 @@ double AssemblyReasoner::BestRight(int part_a, int part_b, int label) const {
       best = std::max(best, impl_->belief.Probability(pair, other));
   }
   return best;
+}
+
+bool AssemblyReasoner::IsSeen(const BelievedJoint& joint) const {
+  return !impl_->unseen.contains({joint.part_a, joint.part_b});
 }
 
 bool AssemblyReasoner::IsTurned(const BelievedJoint& joint) const {

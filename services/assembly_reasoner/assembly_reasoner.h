@@ -28,6 +28,7 @@ struct AssemblyReasonerOptions {
   AssemblyBeliefOptions belief;
   HiddenPartOptions hidden;
   double deepest_overlap = 0.005;   ///< m that the measured surfaces of two parts may stand in each other
+  double break_overlap = 0.0025;    ///< m, the same for a joint of one of them to be seen to come apart
   double decide_probability = 0.9;  ///< of a new label
   double decide_hold = 0.07;        ///< s it has to last
   double wrong_hold = 0.30;         ///< s, the same for a mistake
@@ -93,6 +94,8 @@ class AssemblyReasoner {
   double ProbabilityOf(int part_a, int part_b, int label) const;
   /// Probability of the best connection of the task between the two parts other than `label`.
   double BestRight(int part_a, int part_b, int label) const;
+  /// Whether both parts of the joint were seen in it; else it is known by what holds a hidden part (hidden_parts.h).
+  bool IsSeen(const BelievedJoint& joint) const;
   /// Whether the wrong joint is between the right kinds of parts for a step, so that turning one over may mend it.
   bool IsTurned(const BelievedJoint& joint) const;
 

@@ -122,6 +122,7 @@ void AssemblyReasonerService::Deliver(const LessonOutput& out) {
     if (pending_.size() > kMostPending) pending_.pop_front();
     Send(pending_.back(), now);
   }
+  if (out.state.task != state_.task) last_task_ = 0;  // the tracker is to follow at once
   const bool changed = Differs(out.state, state_);
   state_ = out.state;
   if (!changed) return;

@@ -27,6 +27,8 @@ constexpr double kTwistJitter = 0.1;       // rad, the same
 constexpr double kOtherwise = 4;           // nats by which earlier measurements show that it was otherwise before
 constexpr double kClear = 0.3;             // Clarity of a measurement that dates a change
 constexpr double kSlowing = 1.3;           // hands slow down before parts meet
+constexpr double kTouch = 0.001;           // m that surfaces which touch are measured in each other
+constexpr double kArm = 0.06;              // m over which a misplaced part is turned by what it is off
 
 double LogNormal(const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance) {
   const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
@@ -56,17 +58,21 @@ class CoachConnectionModel : public ConnectionModel {
     if (frozen && !view.inferred) return {};
     const PairEvidence& pair = *view.evidence;
     RelativePoseWindow& window = windows_[{view.part_a, view.part_b}];
-    window.Add({view.utime, pair.X_AB, pair.covariance + Blur(view, visible), pair.motion[0], pair.motion[1], visible});
+    const double overlap = std::max(0.0, -pair.surface_distance - kTouch);
+    const Matrix6 misplaced = Isotropic(overlap, overlap / kArm);
+    window.Add({view.utime, pair.X_AB, pair.covariance + Blur(view, visible) + misplaced, pair.motion[0],
+                pair.motion[1], visible});
     const auto estimate = window.Estimate(view.utime);
     if (!estimate) return {};
+    const Matrix6 covariance = estimate->covariance + misplaced;
     PairVerdict verdict;
     verdict.has_evidence = true;
     const auto& classes = Classes(view.part_a, view.part_b);
     const double weight = std::clamp(visible / options_.full_visible, 0.3, 1.0);
     double best = -1e9;
     for (const ContactClass& contact : classes) {
-      double odds = LogOdds(contact, estimate->X_AB, estimate->covariance);
-      if (odds > -4) odds += MovedTogether(*estimate) + ImageEvidence(contact, pair);
+      double odds = LogOdds(contact, estimate->X_AB, covariance);
+      if (odds > -4) odds += MovedTogether(*estimate) + ImageEvidence(contact, pair) + Pressed(pair, overlap);
       if (view.inferred) odds -= options_.inferred_price;
       odds = std::clamp(weight * odds, -options_.largest_log_odds, options_.largest_log_odds);
       verdict.log_odds.push_back(odds);
@@ -174,6 +180,15 @@ class CoachConnectionModel : public ConnectionModel {
     return std::clamp(options_.image_weight * pair.log_evidence, -options_.image_limit, options_.image_limit);
   }
 
+  /// Parts can't stand in each other: measured like that they touch, as a joint's do, or are further off still, as
+  /// those of a near miss would be. Half the poses around a joint are ones that can be.
+  double Pressed(const PairEvidence& pair, double overlap) const {
+    const double variance =
+        pair.covariance.diagonal().head<3>().mean() + options_.slack_position * options_.slack_position;
+    const double apart = std::erfc(overlap / std::sqrt(2 * variance));
+    return std::min(options_.pressed_limit, -std::log(std::max(apart, 1e-12)));
+  }
+
   double UnknownContact(const RelativePoseEstimate& estimate, const PairEvidence& pair) const {
     const bool moved = estimate.travel > options_.unknown_travel && estimate.constant_for >= options_.unknown_time;
     const bool touching = std::abs(pair.surface_distance) < options_.unknown_gap;
@@ -226,9 +241,13 @@ class CoachConnectionModel : public ConnectionModel {
         verdict.log_odds.empty() ? 0 : *std::max_element(verdict.log_odds.begin(), verdict.log_odds.end());
     if (view.decided < 0) return !view.misfit || best > 0;
     if (verdict.log_odds[view.decided] > 0) return true;
+    // The window may still be full of what a part looked like while it was covered.
+    const Matrix6 single = view.evidence->covariance + Blur(view, visible);
+    if (LogOdds(Classes(view.part_a, view.part_b)[view.decided], view.evidence->X_AB, single) > 0) return false;
     if (view.misfit || visible < options_.break_visible) return false;
     if (JumpedLately(view)) return false;
-    return Speed(view) < options_.calm_speed || view.evidence->surface_distance > options_.clear_gap;
+    if (view.evidence->surface_distance > options_.clear_gap) return true;
+    return !view.pressed && Speed(view) < options_.calm_speed;
   }
 
   /// Maximum likelihood of the moment from which on the pair was (or was no longer) in the class: the start of the

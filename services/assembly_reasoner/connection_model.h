@@ -21,6 +21,7 @@ struct PairView {
   const PairEvidence* evidence = nullptr;  ///< null: the tracker said nothing of this pair
   bool inferred = false;                   ///< the evidence is of a hidden part that a seen one holds (hidden_parts.h)
   bool misfit = false;                     ///< one of the two is measured inside another part, where nothing can be
+  bool pressed = false;                    ///< one of the two stands in another part by more than it is measured wrong
   int decided = -1;                        ///< class that the pair is believed to be in; negative: none
 };
 
@@ -64,6 +65,7 @@ struct CoachConnectionModelOptions {
   double together_bonus = 2.0;     ///< nats
   double image_weight = 0.1;       ///< of PairEvidence::log_evidence: neighbouring pixels are no independent witnesses
   double image_limit = 2.0;        ///< nats, of that term
+  double pressed_limit = 3.0;      ///< nats at most for parts that are measured in each other: they touch
   double inferred_price = 1.0;     ///< nats against what is known by a partner only
   double calm_speed = 0.15;        ///< m/s of either part up to which a small separation counts as coming apart
   double clear_gap = 0.008;        ///< m of air between the surfaces that counts as coming apart at any speed

@@ -44,16 +44,19 @@ void Lesson::Choose(size_t task) {
   reasoner_ = std::make_unique<AssemblyReasoner>(tasks_[task], options_.reasoner);
   skipped_.clear();
   poses_.reset();
-  begins_with_poses_ = false;
+  begins_with_poses_ = resting_ = false;
+  changed_ = now_;
   state_ = {};
 }
 
 void Lesson::Begin(int64_t session) {
+  greeted_ = greeted_ && session == session_;
   session_ = session;
   begun_ = true;
+  resting_ = false;
   skipped_.clear();
   begins_with_poses_ = !poses_;
-  policy_.Begin(poses_ ? poses_->utime : 0);
+  policy_.Begin(now_, greeted_);
 }
 
 LessonView Lesson::View(std::vector<ConnectionEvent> events) const {
@@ -62,6 +65,12 @@ LessonView Lesson::View(std::vector<ConnectionEvent> events) const {
 
 LessonOutput Lesson::Step(const PartPoses& poses) {
   LessonOutput out;
+  if (changed_ != 0 && poses.utime - changed_ < static_cast<int64_t>(options_.task_change * 1e6)) {
+    out.accepted = false;
+    out.refused = "they may be of the former task's parts";
+    Finish(out);
+    return out;
+  }
   ReasonerOutput reasoned = reasoner_->Step(poses);
   out.accepted = reasoned.accepted;
   out.refused = reasoned.refused;
@@ -69,13 +78,18 @@ LessonOutput Lesson::Step(const PartPoses& poses) {
   out.belief = std::move(reasoned.belief);
   if (out.accepted) {
     poses_ = poses;
+    now_ = poses.utime;
     // Started before the camera gave its first picture: there was no time yet.
-    if (std::exchange(begins_with_poses_, false)) policy_.Begin(poses.utime);
+    if (std::exchange(begins_with_poses_, false)) policy_.Begin(now_, greeted_);
     if (options_.start_by_itself && !begun_) Begin(poses.utime);
     Tell(reasoned.events, out);
     if (begun_) {
-      policy_.Step(View(std::move(reasoned.events)));
-      Speak(out);
+      if (resting_) {
+        Rest(out);
+      } else {
+        policy_.Step(View(std::move(reasoned.events)));
+      }
+      if (poses_) Speak(out);
     }
   }
   Finish(out);
@@ -103,10 +117,43 @@ void Lesson::Emit(GuidanceEvent event, LessonOutput& out) {
   out.events.push_back(std::move(event));
 }
 
+/// The task is built and praised: says that another one follows, and introduces it after the pause.
+void Lesson::Rest(LessonOutput& out) {
+  if (policy_.phase() == Phase::kPaused || speech_.speaking(now_)) {
+    rested_since_ = 0;
+    return;
+  }
+  if (!next_told_) {
+    Utterance u;
+    u.key = "next_task";
+    u.born = now_;
+    speech_.Offer(u);
+    return;
+  }
+  if (rested_since_ == 0) rested_since_ = now_;
+  if (static_cast<double>(now_ - rested_since_) * 1e-6 >= options_.task_pause) BeginNext(out);
+}
+
+void Lesson::BeginNext(LessonOutput& out) {
+  Choose(chosen_ + 1);
+  out.belief.connections.clear();  // they were of the former task
+  GuidanceEvent e;
+  e.utime = e.since = now_;
+  e.kind = "session";
+  e.subject = "next_task";
+  e.reason = task().name;
+  Emit(e, out);
+  Begin(session_);
+}
+
+bool Lesson::IsTrue(const Utterance& utterance, const LessonView& view) const {
+  return utterance.key == "next_task" ? resting_ : policy_.IsTrue(utterance, view);
+}
+
 /// Withdraws what has become false, then says what is due.
 void Lesson::Speak(LessonOutput& out) {
   const LessonView view = View({});
-  const auto is_true = [&](const Utterance& u) { return policy_.IsTrue(u, view); };
+  const auto is_true = [&](const Utterance& u) { return IsTrue(u, view); };
   if (const int64_t id = speech_.Interrupt(is_true)) {
     RobotCommand cancel = Command(*speech_.current());
     cancel.kind = ActKind::kCancel;
@@ -176,14 +223,20 @@ void Lesson::Aim(const Utterance& u, RobotCommand& command) const {
 }
 
 void Lesson::Say(const Utterance& u, LessonOutput& out) {
-  const int64_t now = poses_ ? poses_->utime : 0;
   RobotCommand command = Command(u);
   command.text = Words(u, command);
   Aim(u, command);
-  speech_.Began(command.id, u, command.text, now);
-  policy_.Spoken(u, now);
+  speech_.Began(command.id, u, command.text, now_);
+  policy_.Spoken(u, now_);
+  greeted_ |= u.key == "introduction";
+  next_told_ |= u.key == "next_task";
+  if (u.key == "complete" && HasNext()) {
+    resting_ = true;
+    next_told_ = false;
+    rested_since_ = 0;
+  }
   GuidanceEvent e;
-  e.utime = e.since = now;
+  e.utime = e.since = now_;
   e.kind = "say";
   e.subject = u.key;
   e.part_a = u.part_a;
@@ -198,7 +251,7 @@ LessonOutput Lesson::Handle(const OperatorCommand& command) {
   LessonOutput out;
   const std::string refusal = Obey(command, out);
   GuidanceEvent e;
-  e.utime = e.since = poses_ ? poses_->utime : 0;
+  e.utime = e.since = now_;
   e.kind = "operator";
   e.subject = Name(command.kind);
   e.reason = refusal.empty() ? command.argument : "refused: " + refusal;
@@ -213,8 +266,8 @@ LessonOutput Lesson::Handle(const OperatorCommand& command) {
 
 /// @returns why the command can't be obeyed; empty if it was
 std::string Lesson::Obey(const OperatorCommand& command, LessonOutput& out) {
-  const int64_t now = poses_ ? poses_->utime : 0;
-  const bool running = begun_ && policy_.phase() != Phase::kComplete;
+  const int64_t now = now_;
+  const bool running = begun_ && (resting_ || policy_.phase() != Phase::kComplete);
   const auto say = [&](const std::string& key, const std::string& text) {
     Utterance u;
     u.key = key;
@@ -239,6 +292,10 @@ std::string Lesson::Obey(const OperatorCommand& command, LessonOutput& out) {
       language_ = command.argument;
       return "";
     case OperatorKind::kStart:
+      if (resting_) {
+        BeginNext(out);
+        return "";
+      }
       if (running) return "the lesson is running";
       Begin(command.id);
       return "";
@@ -251,6 +308,10 @@ std::string Lesson::Obey(const OperatorCommand& command, LessonOutput& out) {
       policy_.Resume(now);
       return "";
     case OperatorKind::kSkip:
+      if (resting_) {
+        BeginNext(out);
+        return "";
+      }
       if (!running || policy_.step() < 0) return "no step is asked for";
       skipped_.push_back(policy_.step());
       policy_.AnnounceAgain();
@@ -268,7 +329,7 @@ std::string Lesson::Obey(const OperatorCommand& command, LessonOutput& out) {
       say("operator", command.argument);
       return "";
     case OperatorKind::kHelp:
-      if (!running) return "the lesson is not running";
+      if (!running || resting_) return "no step is asked for";
       policy_.Help();
       return "";
     case OperatorKind::kStop: {
@@ -303,8 +364,7 @@ std::string Lesson::Mark(const std::string& name, bool made, LessonOutput& out) 
 }
 
 void Lesson::Handle(const RobotStatus& status) {
-  const int64_t now = poses_ ? poses_->utime : 0;
-  if (status.session == session_ && status.state >= ActState::kDone) speech_.Ended(status.command_id, now);
+  if (status.session == session_ && status.state >= ActState::kDone) speech_.Ended(status.command_id, now_);
   if (help_requests_ >= 0 && status.help_requests > help_requests_) policy_.Help();
   help_requests_ = status.help_requests;
 }
@@ -313,7 +373,7 @@ void Lesson::Finish(LessonOutput& out) {
   for (GuidanceEvent& e : policy_.TakeEvents()) Emit(std::move(e), out);
   for (const SpeechQueue::Dropped& d : speech_.TakeDropped()) {
     GuidanceEvent e;
-    e.utime = e.since = poses_ ? poses_->utime : 0;
+    e.utime = e.since = now_;
     e.kind = "act";
     e.subject = d.utterance.key;
     e.part_a = d.utterance.part_a;
@@ -350,7 +410,11 @@ void Lesson::Restore(const LessonMemory& memory) {
   begun_ = memory.begun;
   last_event_ = memory.last_event + kIdReserve;
   last_command_ = memory.last_command + kIdReserve;
-  if (begun_) policy_.Restore(memory.policy);
+  if (!begun_) return;
+  greeted_ = true;
+  policy_.Restore(memory.policy);
+  resting_ = next_told_ = policy_.phase() == Phase::kComplete && HasNext();
+  rested_since_ = 0;
 }
 
 }  // namespace coach

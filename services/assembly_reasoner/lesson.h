@@ -1,6 +1,10 @@
 // A lesson: tasks one after the other, the reasoner that watches, the policy that answers, the operator who overrides.
 // Pure: poses, operator commands and robot statuses in; state, belief, events and robot commands out. Time is that of
 // the poses.
+//
+// After the last praise of a task that another one follows, the lesson rests: what was built may be taken apart,
+// nothing is asked for. The next task is introduced after the pause, or at once when the operator says `start` or
+// `skip`; he may pause, and choose another task instead.
 #pragma once
 
 #include <array>
@@ -31,6 +35,9 @@ struct LessonOptions {
   int no_repeat = 3;             ///< of the last wordings of a kind none is chosen again
   double validity = 8;           ///< s for which a command to the robot holds
   uint64_t seed = 1;             ///< of the choice of wordings
+  int in_a_row = 1;              ///< of the tasks, so many from the first on follow each other by themselves
+  double task_pause = 20;        ///< s of rest after the last praise of a task until the next one is introduced
+  double task_change = 1;        ///< s after a change of task for which poses may still be of the former one's parts
 };
 
 struct LessonOutput {
@@ -77,6 +84,10 @@ class Lesson {
   void Choose(size_t task);
   void Begin(int64_t session);
   LessonView View(std::vector<ConnectionEvent> events) const;
+  bool HasNext() const { return static_cast<int>(chosen_) + 1 < options_.in_a_row; }
+  void Rest(LessonOutput& out);
+  void BeginNext(LessonOutput& out);
+  bool IsTrue(const Utterance& utterance, const LessonView& view) const;
   void Speak(LessonOutput& out);
   void Say(const Utterance& utterance, LessonOutput& out);
   RobotCommand Command(const Utterance& utterance);
@@ -98,6 +109,11 @@ class Lesson {
   ResponsePolicy policy_;
   bool begun_ = false;
   bool begins_with_poses_ = false;  // begun, but no poses have come yet that would tell the time
+  bool greeted_ = false;            // in this session
+  bool resting_ = false;            // between two tasks
+  bool next_told_ = false;          // that another task follows
+  int64_t rested_since_ = 0;        // us; 0: the pause has not begun
+  int64_t now_ = 0, changed_ = 0;   // us, of the last poses; of them when the task was changed, 0 never
   int64_t session_ = 0, last_event_ = 0, last_command_ = 0, help_requests_ = -1;
   std::vector<int> skipped_;
   std::optional<PartPoses> poses_;

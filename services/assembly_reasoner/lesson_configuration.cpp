@@ -16,6 +16,11 @@ void ReadConnections(const YamlNode& node, AssemblyReasonerOptions& o) {
   number("decide_hold", o.decide_hold, 0, 5);
   number("wrong_hold", o.wrong_hold, 0, 5);
   number("undo_hold", o.undo_hold, 0, 5);
+  number("deepest_overlap", o.deepest_overlap, 0, 0.05);
+  number("correlation_time", o.model.correlation_time, 0.01, 2);
+  number("blur_time", o.model.blur_time, 0, 0.2);
+  number("blur_turn", o.model.blur_turn, 0, 5);
+  number("hidden_blur", o.model.hidden_blur, 0, 0.02);
   number("slack_position", o.model.slack_position, 1e-4, 0.02);
   number("slack_angle", o.model.slack_angle, 1e-3, 0.3);
   number("smallest_visible", o.model.smallest_visible, 0.01, 0.5);
@@ -29,9 +34,29 @@ void ReadConnections(const YamlNode& node, AssemblyReasonerOptions& o) {
   number("together_bonus", o.model.together_bonus, 0, 10);
   number("image_weight", o.model.image_weight, 0, 1);
   number("image_limit", o.model.image_limit, 0, 10);
+  number("break_overlap", o.break_overlap, 0, 0.05);
+  number("pressed_limit", o.model.pressed_limit, 0, 10);
+  number("inferred_price", o.model.inferred_price, 0, 10);
+  number("calm_speed", o.model.calm_speed, 0, 2);
+  number("clear_gap", o.model.clear_gap, 0, 0.1);
+  number("break_visible", o.model.break_visible, 0, 1);
+  number("fastest_pull", o.model.fastest_pull, 0.05, 10);
+  number("fastest_twist", o.model.fastest_twist, 0.5, 100);
+  number("jump_time", o.model.jump_time, 0, 10);
+  number("dating_limit", o.model.dating_limit, 0.1, 20);
+  number("dating_visible", o.model.dating_visible, 0.05, 1);
+  number("least_approach", o.model.least_approach, 0.001, 1);
   number("unknown_travel", o.model.unknown_travel, 0.02, 1);
   number("unknown_time", o.model.unknown_time, 0.2, 10);
   number("unknown_gap", o.model.unknown_gap, 0.0005, 0.02);
+  number("unknown_slip", o.model.unknown_slip, 0.001, 0.05);
+  number("unknown_twist", o.model.unknown_twist, 0.01, 1);
+  number("hidden_visible", o.hidden.hidden_visible, 0, 0.5);
+  number("holder_visible", o.hidden.holder_visible, 0.05, 1);
+  number("seat_position", o.hidden.seat_position, 0.001, 0.05);
+  number("seat_angle", o.hidden.seat_angle, 0.01, 1);
+  number("play_position", o.hidden.play_position, 0.0001, 0.02);
+  number("play_angle", o.hidden.play_angle, 0.001, 0.3);
   number("forgetting_time", o.belief.forgetting_time, 0.01, 5);
   number("price_connection", o.belief.price_connection, -5, 10);
   number("price_mistake", o.belief.price_mistake, -5, 10);
@@ -90,6 +115,7 @@ LessonConfiguration ReadLessonConfiguration(const YamlNode& section, const fs::p
   c.options.language = section.Get<std::string>("language", c.options.language);
   c.options.group = section.Get<bool>("group", c.options.group);
   c.options.start_by_itself = section.Get<bool>("start_by_itself", c.options.start_by_itself);
+  c.options.task_pause = section.GetInRange("task_pause", c.options.task_pause, 0, 3600);
   if (const auto list = section.Find("tasks")) {
     for (const std::string& file : list->As<std::vector<std::string>>()) c.tasks.push_back(folder / file);
   }

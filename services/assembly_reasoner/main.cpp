@@ -25,7 +25,7 @@ void AddTasksBeside(const Station& station, std::vector<Task>& tasks) {
     }
 }
 
-/// The station's task first, then those of the lesson, then those beside the station's; a file given twice counts once.
+/// The station's task first, then those of the lesson; a file given twice counts once.
 std::vector<Task> LoadTasks(const Station& station, const LessonConfiguration& configuration) {
   std::vector<Task> tasks;
   std::vector<std::filesystem::path> files = configuration.tasks;
@@ -42,7 +42,6 @@ std::vector<Task> LoadTasks(const Station& station, const LessonConfiguration& c
     }
     if (!known) tasks.push_back(std::move(task));
   }
-  AddTasksBeside(station, tasks);
   return tasks;
 }
 
@@ -71,7 +70,10 @@ int main(int argc, char** argv) {
         if (!books.contains(configuration.options.language))
           throw ConfigurationError("guidance: language: found '" + configuration.options.language +
                                    "', expected one of the phrase files in " + configuration.phrases.string());
-        Lesson lesson(LoadTasks(station, configuration), std::move(books), configuration.options, context.node.station);
+        std::vector<Task> tasks = LoadTasks(station, configuration);
+        configuration.options.in_a_row = static_cast<int>(tasks.size());
+        AddTasksBeside(station, tasks);
+        Lesson lesson(std::move(tasks), std::move(books), configuration.options, context.node.station);
         context.node.expects_frames = true;
         Node node(context.node);
         ReasonerServiceOptions options;

@@ -103,26 +103,27 @@ const std::vector<PhraseKind>& PhraseKinds() {
     return more;
   };
   static const std::vector<PhraseKind> kinds{
-      {"introduction", {"left"}},   // a task begins
-      {"step", kParts},             // the next connection is asked for
-      {"idle_1", kParts},           // the child is late: the goal in other words
-      {"idle_2", kParts},           // names the two parts; eyes and look
-      {"idle_3", with({"angle"})},  // points; the two parts stand at an angle
-      {"idle_3_straight", kParts},  // points; the two parts stand in line
-      {"idle_4", kParts},           // full description, picture on the page
-      {"praise", {"left"}},         // a right connection
-      {"complete", {}},             // the last one
-      {"wrong", kParts},            // these two do not go together like this
-      {"wrong_turned", kParts},     // the right two, one the wrong way round
-      {"wrong_unknown", kParts},    // something is joined that is on no list
-      {"wrong_last", kParts},       // the correction was said three times: the whole help
-      {"hedge", kParts},            // not sure: look once more
-      {"repair", {}},               // the correction was a mistake of the robot's
-      {"lost", {}},                 // the parts can't be seen
-      {"skipped", {}},              // the operator skips a step
-      {"next_task", {}},            // another task follows
-      {"pause", {}},                // the lesson pauses
-      {"resume", {}},               // and goes on
+      {"introduction", {"left"}},        // a task begins
+      {"introduction_again", {"left"}},  // another task of the lesson begins
+      {"step", kParts},                  // the next connection is asked for
+      {"idle_1", kParts},                // the child is late: the goal in other words
+      {"idle_2", kParts},                // names the two parts; eyes and look
+      {"idle_3", with({"angle"})},       // points; the two parts stand at an angle
+      {"idle_3_straight", kParts},       // points; the two parts stand in line
+      {"idle_4", kParts},                // full description, picture on the page
+      {"praise", {"left"}},              // a right connection
+      {"complete", {}},                  // the last one
+      {"wrong", kParts},                 // these two do not belong together
+      {"wrong_turned", kParts},          // the right two, one the wrong way round
+      {"wrong_unknown", kParts},         // two are joined as on no list, or as two that belong together are not
+      {"wrong_last", kParts},            // the correction was said three times: the whole help
+      {"hedge", kParts},                 // not sure: look once more
+      {"repair", {}},                    // the correction was a mistake of the robot's
+      {"lost", {}},                      // the parts can't be seen
+      {"skipped", {}},                   // the operator skips a step
+      {"next_task", {}},                 // another task follows
+      {"pause", {}},                     // the lesson pauses
+      {"resume", {}},                    // and goes on
   };
   return kinds;
 }

@@ -14,6 +14,15 @@ double Seconds(int64_t from, int64_t to) { return static_cast<double>(to - from)
 
 JointName NameOf(const BelievedJoint& joint) { return {joint.label, joint.part_a, joint.part_b}; }
 
+/// Whether parts of these kinds are joined somewhere in the task.
+bool ArePartners(const Task& task, int part_a, int part_b) {
+  const std::pair types{task.parts[part_a].type, task.parts[part_b].type};
+  return std::any_of(task.connections.begin(), task.connections.end(), [&](const Connection& c) {
+    const std::pair joined{task.slots[c.slot_a].type, task.slots[c.slot_b].type};
+    return joined == types || std::pair(joined.second, joined.first) == types;
+  });
+}
+
 bool IsIdle(const std::string& key) { return key.rfind("idle_", 0) == 0; }
 bool IsWrong(const std::string& key) { return key.rfind("wrong", 0) == 0; }
 
@@ -49,8 +58,9 @@ void ResponsePolicy::ToPhase(Phase phase, const std::string& reason) {
   Log("phase", ToString(phase), reason);
 }
 
-void ResponsePolicy::Begin(int64_t now) {
+void ResponsePolicy::Begin(int64_t now, bool greeted) {
   now_ = now;
+  introduction_ = greeted ? "introduction_again" : "introduction";
   begun_ = true;
   introduced_ = false;
   step_ = -1;
@@ -58,9 +68,10 @@ void ResponsePolicy::Begin(int64_t now) {
   to_praise_.clear();
   corrections_.clear();
   corrections_said_.clear();
+  last_correction_ = {};
   speech_.Clear();
   ToPhase(Phase::kIntroduction, "the task begins");
-  Offer("introduction", Priority::kExplanatory, true, -1, -1, -1, now);
+  Offer(introduction_, Priority::kExplanatory, true, -1, -1, -1, now);
 }
 
 void ResponsePolicy::Pause(int64_t now) {
@@ -77,7 +88,7 @@ void ResponsePolicy::Resume(int64_t now) {
   if (phase_ != Phase::kPaused) return;
   const bool unfinished = paused_phase_ == Phase::kIntroduction && !introduced_;
   ToPhase(unfinished || paused_phase_ == Phase::kComplete ? paused_phase_ : Phase::kAnnounce, "by the operator");
-  Offer(unfinished ? "introduction" : "resume", Priority::kOperator, true, -1, -1, -1, now);
+  Offer(unfinished ? introduction_ : "resume", Priority::kOperator, true, -1, -1, -1, now);
 }
 
 void ResponsePolicy::Offer(const std::string& key, Priority priority, bool solicited, int connection, int part_a,
@@ -162,7 +173,8 @@ void ResponsePolicy::Praise(const LessonView& view) {
       continue;
     }
     const double p = view.reasoner->Probability(joint->connection, joint->part_a, joint->part_b);
-    if (p < options_.praise_probability || Seconds(it->second, view.now) < options_.praise_hold) {
+    const bool due = view.reasoner->IsSeen(*joint) && Seconds(it->second, view.now) >= options_.praise_hold;
+    if (p < options_.praise_probability || !due) {
       ++it;
       continue;
     }
@@ -175,12 +187,12 @@ void ResponsePolicy::Praise(const LessonView& view) {
   }
 }
 
-/// The wrong joint that has been said least often.
+/// The wrong joint that has been said least often, of those that were seen.
 const BelievedJoint* ResponsePolicy::WorstWrong(const LessonView& view) const {
   const BelievedJoint* worst = nullptr;
   int least = 1 << 20;
   for (const BelievedJoint& j : view.reasoner->joints()) {
-    if (j.connection >= 0) continue;
+    if (j.connection >= 0 || !view.reasoner->IsSeen(j)) continue;
     const auto said = corrections_said_.find(NameOf(j));
     const int times = said == corrections_said_.end() ? 0 : said->second;
     if (times < least) {
@@ -216,7 +228,7 @@ void ResponsePolicy::Correct(const LessonView& view) {
   if (correction.last != 0 && Seconds(correction.last, view.now) < options_.correct_gap) return;
   const Task& task = belief.task();
   std::string key = "wrong";
-  if (wrong->mistake < 0) key = "wrong_unknown";
+  if (wrong->mistake < 0 || ArePartners(task, wrong->part_a, wrong->part_b)) key = "wrong_unknown";
   if (belief.IsTurned(*wrong)) key = "wrong_turned";
   if (times == options_.correct_times) key = "wrong_last";
   if (!speech_.Waits(key))
@@ -270,9 +282,10 @@ void ResponsePolicy::Advance(const LessonView& view) {
   const int next = NextConnection(view.reasoner->task(), view.reasoner->placement(), view.skipped);
   if (next < 0) {
     step_ = -1;
-    if (phase_ == Phase::kComplete || !to_praise_.empty()) return;
+    if (!to_praise_.empty()) return;
+    if (phase_ != Phase::kComplete) celebrated_ = false;
     ToPhase(Phase::kComplete, "every connection is made");
-    Offer("complete", Priority::kCongratulatory, true, -1, -1, -1, view.now);
+    if (!celebrated_) Offer("complete", Priority::kCongratulatory, true, -1, -1, -1, view.now);
     return;
   }
   if (phase_ == Phase::kComplete) ToPhase(Phase::kWait, "a connection came apart");
@@ -368,8 +381,9 @@ bool ResponsePolicy::IsTrue(const Utterance& u, const LessonView& view) const {
 }
 
 void ResponsePolicy::Spoken(const Utterance& u, int64_t now) {
-  if (u.key == "introduction") introduced_ = true;
+  if (u.key == introduction_) introduced_ = true;
   if (u.key == "step") announced_ = true;
+  if (u.key == "complete") celebrated_ = true;
   if (u.key == "hedge") last_hedge_ = now;
   if (u.key == "lost") last_lost_ = now;
   if (IsIdle(u.key)) {
@@ -392,7 +406,7 @@ void ResponsePolicy::Spoken(const Utterance& u, int64_t now) {
 PolicyMemory ResponsePolicy::Save() const { return {phase_, idle_level_, corrections_said_, repairs_}; }
 
 void ResponsePolicy::Restore(const PolicyMemory& memory) {
-  begun_ = introduced_ = announced_ = true;
+  begun_ = introduced_ = announced_ = celebrated_ = true;
   made_before_ = std::numeric_limits<std::ptrdiff_t>::max();  // nothing is announced again
   paused_phase_ = Phase::kWait;
   phase_ = memory.phase == Phase::kPaused || memory.phase == Phase::kComplete ? memory.phase : Phase::kWait;

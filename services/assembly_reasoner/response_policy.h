@@ -1,6 +1,6 @@
 // What the robot answers to the state of the assembly: phases, thresholds, hint ladder, corrections and their repair.
 // Level-triggered: each Step looks at the whole state, so a lost frame or a restart changes nothing. Time is that of
-// the data.
+// the data. The child hears of no joint whose two parts were not both seen in it.
 #pragma once
 
 #include <array>
@@ -63,7 +63,8 @@ class ResponsePolicy {
   ResponsePolicy(const ResponseOptions& options, SpeechQueue& speech) : options_(options), speech_(speech) {}
 
   /// Begins a task: introduction, then the first step.
-  void Begin(int64_t now);
+  /// @param greeted the child was greeted before in this session
+  void Begin(int64_t now, bool greeted = false);
   void Step(const LessonView& view);
   void Pause(int64_t now);
   void Resume(int64_t now);
@@ -114,7 +115,8 @@ class ResponsePolicy {
   ResponseOptions options_;
   SpeechQueue& speech_;
   Phase phase_ = Phase::kIntroduction, paused_phase_ = Phase::kWait;
-  bool begun_ = false, introduced_ = false, announced_ = false, help_ = false;
+  const char* introduction_ = "introduction";  // kind of phrase
+  bool begun_ = false, introduced_ = false, announced_ = false, celebrated_ = false, help_ = false;
   std::ptrdiff_t made_before_ = 0;  // connections made when the present step began
   int step_ = -1, idle_level_ = 0, repairs_ = 0;
   int64_t now_ = 0, last_movement_ = 0, last_part_movement_ = 0, hands_since_ = 0, quiet_ = 0, last_step_ = 0,

@@ -23,6 +23,8 @@ EventScore& EventScore::operator+=(const EventScore& other) {
   false_alarms += other.false_alarms;
   wrong_truths += other.wrong_truths;
   wrong_found += other.wrong_found;
+  unknown_truths += other.unknown_truths;
+  unknown_found += other.unknown_found;
   disconnects += other.disconnects;
   disconnects_found += other.disconnects_found;
   delays.insert(delays.end(), other.delays.begin(), other.delays.end());
@@ -52,6 +54,11 @@ EventScore Score(const std::vector<TrueEvent>& truth, const std::vector<Connecti
     if (t.type == "disconnect") {
       ++score.disconnects;
       score.disconnects_found += match[i] >= 0;
+      continue;
+    }
+    if (t.names == std::vector<std::string>{"unknown"}) {
+      ++score.unknown_truths;
+      score.unknown_found += match[i] >= 0;
       continue;
     }
     ++score.truths;

@@ -13,8 +13,9 @@ struct EventScore {
   int found = 0;      ///< matched: same type, one of the names, within 20 s, one to one
   int within_1s = 0;  ///< decided at most 1 s after they were due
   int within_5s = 0;
-  int false_alarms = 0;  ///< connect and wrong events that match nothing
-  int wrong_truths = 0, wrong_found = 0;
+  int false_alarms = 0;                       ///< connect and wrong events that match nothing
+  int wrong_truths = 0, wrong_found = 0;      ///< mistakes of the task
+  int unknown_truths = 0, unknown_found = 0;  ///< contacts in no class; counted nowhere else
   int disconnects = 0, disconnects_found = 0;
   std::vector<double> delays;  ///< s, decided - due
   std::vector<double> dating;  ///< s, since - moment

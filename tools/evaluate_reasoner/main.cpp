@@ -49,11 +49,12 @@ void PrintEvents(const ScriptedLesson& lesson, const std::vector<ConnectionEvent
 void PrintRow(const std::string& task, double noise, const char* model, const EventScore& s, int lessons,
               int near_misses) {
   const double n = std::max(1, s.truths);
-  std::printf("| %s | %.0f | %s | %d | %d | %.1f | %.1f | %.2f | %.2f | %.2f | %.1f | %d/%d | %d/%d | %d (%d) |\n",
-              task.c_str(), noise * 1000, model, lessons, s.truths, 100 * s.within_1s / n, 100 * s.found / n,
-              Quantile(s.delays, 0.5), Quantile(s.delays, 0.95), MedianOfAbsolute(s.dating),
-              100.0 * s.found / std::max(1, s.found + s.false_alarms), s.wrong_found, s.wrong_truths,
-              s.disconnects_found, s.disconnects, s.false_alarms, near_misses);
+  std::printf(
+      "| %s | %.0f | %s | %d | %d | %.1f | %.1f | %.2f | %.2f | %.2f | %.1f | %d/%d | %d/%d | %d/%d | %d (%d) |\n",
+      task.c_str(), noise * 1000, model, lessons, s.truths, 100 * s.within_1s / n, 100 * s.found / n,
+      Quantile(s.delays, 0.5), Quantile(s.delays, 0.95), MedianOfAbsolute(s.dating),
+      100.0 * s.found / std::max(1, s.found + s.false_alarms), s.wrong_found, s.wrong_truths, s.unknown_found,
+      s.unknown_truths, s.disconnects_found, s.disconnects, s.false_alarms, near_misses);
 }
 
 }  // namespace
@@ -63,7 +64,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> tasks;
   std::vector<double> noises{1, 3, 6};
   int lessons = 20;
-  double fps = 30, misses = 0.3;
+  double fps = 30, misses = 0.3, unknown = 0;
   uint64_t seed = 1;
   bool verbose = false, no_paper = false;
   AssemblyReasonerOptions reasoner;
@@ -72,19 +73,22 @@ int main(int argc, char** argv) {
   app.add_option("--lessons", lessons, "lessons a row");
   app.add_option("--fps", fps, "frames a second");
   app.add_option("--near-misses", misses, "probability of a near miss before a step");
+  app.add_option("--unknown", unknown, "probability of a contact that is on no list before a step");
   app.add_option("--seed", seed, "of the scripts and the errors");
   app.add_option("--decide-probability", reasoner.decide_probability, "from which on a joint is decided");
   app.add_option("--decide-hold", reasoner.decide_hold, "s for which it has to last");
   app.add_option("--forgetting", reasoner.belief.forgetting_time, "s in which new evidence replaces old");
   app.add_option("--price", reasoner.belief.price_connection, "nats against a connection that is not decided");
+  app.add_option("--price-mistake", reasoner.belief.price_mistake, "the same for a mistake");
   app.add_flag("--events", verbose, "print every event");
   app.add_flag("--no-paper", no_paper, "Coach's model only");
   CLI11_PARSE(app, argc, argv);
   try {
     std::puts(
         "| task | noise mm | model | lessons | connections | within 1 s % | found % | delay median s | p95 s | dating "
-        "error median s | precision % | mistakes found | undone found | false alarms (near misses) |");
-    std::puts("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+        "error median s | precision % | mistakes found | unknown contacts found | undone found | false alarms (near "
+        "misses) |");
+    std::puts("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (const std::string& file : tasks) {
       const Task task = LoadTask(file);
       for (const double mm : noises) {
@@ -94,6 +98,7 @@ int main(int argc, char** argv) {
           std::mt19937_64 random(seed * 1000 + static_cast<uint64_t>(i));
           ScriptOptions options;
           options.near_misses = misses;
+          options.unknown = unknown;
           TrackerErrors errors;
           errors.position = mm / 1000;
           const auto lesson = PlayScript(task, RandomScript(task, options, random), errors, fps, random());

@@ -110,6 +110,7 @@ class Stage {
       case ScriptAction::Kind::kConnect:
         return Join(action, false);
       case ScriptAction::Kind::kMistake:
+      case ScriptAction::Kind::kUnknown:
         return Join(action, true);
       case ScriptAction::Kind::kUndo:
         return Part(action);
@@ -172,7 +173,25 @@ class Stage {
     plan.X_before.linear() = ExpRotation({0, 0, Uniform(random_, -0.25, 0.25)}) * plan.X_goal.linear();
     return plan;
   }
+  /// B flat on the table beside A, touching it, as in no class.
+  Pose Touching(int a, int b) {
+    const int type_a = task_.parts[a].type, type_b = task_.parts[b].type;
+    while (true) {
+      Pose X_AB = Pose::Identity();
+      X_AB.linear() = ExpRotation({0, 0, Uniform(random_, -3.14, 3.14)});
+      const double angle = Uniform(random_, -3.14, 3.14);
+      for (double r = 0.25; r > 0 && Gap(type_a, type_b, X_AB) > 5e-4; r -= 0.001)
+        X_AB.translation() = Vector3(r * std::cos(angle), r * std::sin(angle), 0);
+      const auto& classes = contacts_.Classes(type_a, type_b);
+      const bool known = std::any_of(classes.begin(), classes.end(), [&](const ContactClass& c) {
+        const ContactError error = NearestContact(c, X_AB);
+        return error.xi.head<3>().norm() < 0.02 && error.xi.tail<3>().norm() < 0.35;
+      });
+      if (!known) return X_AB;
+    }
+  }
   Pose Desired(const ScriptAction& action) {
+    if (action.kind == ScriptAction::Kind::kUnknown) return Touching(action.part_a, action.part_b);
     if (action.kind == ScriptAction::Kind::kMistake) return task_.mistakes[action.index].X_AB;
     const Connection& c = task_.connections[action.index];
     std::vector<double> q;
@@ -190,12 +209,18 @@ class Stage {
     const int from = group_[plan.mover];
     std::replace(group_.begin(), group_.end(), from, group_[plan.other]);
     TellNewJoints(wrong);
+    if (action.kind == ScriptAction::Kind::kUnknown) {
+      const auto [a, b] = std::minmax(action.part_a, action.part_b);
+      joints_.push_back({now_, now_, "wrong", {"unknown"}, a, b});
+      lesson_.events.push_back(joints_.back());
+    }
     if (action.hidden) Wait(0.5);
     hidden_ = {-1, -1};
     Wait(Uniform(random_, 0.3, 0.8));
     if (action.carried) {
       Pose X = X_[plan.mover];
-      X.translation() += Vector3(Uniform(random_, -0.05, 0.05), Uniform(random_, 0.03, 0.06), 0.03);
+      const double far = action.kind == ScriptAction::Kind::kUnknown ? 0.06 : 0;
+      X.translation() += Vector3(Uniform(random_, -0.05, 0.05), far + Uniform(random_, 0.03, 0.06), 0.03);
       X.linear() = ExpRotation({0, 0, Uniform(random_, -0.4, 0.4)}) * X.linear();
       const Pose back = X_[plan.mover];
       Move(Members(plan.mover), plan.mover, X, 0.8);
@@ -291,11 +316,9 @@ class Stage {
     }
     lesson_.frames.push_back(std::move(out));
   }
-  double Gap(int a, int b) const {
-    const int ta = task_.parts[a].type, tb = task_.parts[b].type;
-    if ((X_[a].translation() - X_[b].translation()).norm() > radius_[ta] + radius_[tb] + kPairDistance) return 1;
+  double Gap(int ta, int tb, const Pose& X_AB) const {
+    if (X_AB.translation().norm() > radius_[ta] + radius_[tb] + kPairDistance) return 1;
     double best = 1;
-    const Pose X_AB = X_[a].inverse() * X_[b];
     for (const SurfacePoint& q : surface_[tb]) {
       const Vector3 p_A = X_AB * q.p;
       for (const SurfacePoint& p : surface_[ta]) best = std::min(best, (p.p - p_A).squaredNorm());
@@ -305,7 +328,7 @@ class Stage {
   void AddPair(int a, int b, PartPoses& out) const {
     if (std::min(visible_[a], visible_[b]) < 0.05) return;
     PairEvidence pair;
-    pair.surface_distance = Gap(a, b);
+    pair.surface_distance = Gap(task_.parts[a].type, task_.parts[b].type, X_[a].inverse() * X_[b]);
     if (pair.surface_distance > kPairDistance) return;
     pair.part_a = a;
     pair.part_b = b;
@@ -409,6 +432,12 @@ std::vector<ScriptAction> RandomScript(const Task& task, const ScriptOptions& op
         out.push_back({ScriptAction::Kind::kMistake, m, a, b});
         out.push_back({ScriptAction::Kind::kUndo, m, a, b});
       }
+    }
+    if (options.unknown > 0 && !used[step.part_b] && Uniform(random, 0, 1) < options.unknown) {
+      ScriptAction unknown{ScriptAction::Kind::kUnknown, 0, step.part_a, step.part_b};
+      unknown.carried = true;
+      out.push_back(unknown);
+      out.push_back({ScriptAction::Kind::kUndo, 0, step.part_a, step.part_b});
     }
     if (Uniform(random, 0, 1) < options.near_misses) {
       ScriptAction miss = step;

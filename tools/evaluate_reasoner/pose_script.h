@@ -22,13 +22,13 @@ struct TrackerErrors {
 };
 
 struct ScriptAction {
-  enum class Kind { kConnect, kMistake, kUndo, kNearMiss };
+  enum class Kind { kConnect, kMistake, kUndo, kNearMiss, kUnknown };
   Kind kind = Kind::kConnect;
-  int index = 0;               ///< connection; mistake for kMistake; ignored for kUndo
+  int index = 0;               ///< connection; mistake for kMistake; ignored for kUndo and kUnknown
   int part_a = 0, part_b = 0;  ///< in slot_a / of type_a, and the other
   double gap = 0;              ///< m, of a near miss
   bool hidden = false;         ///< both parts are covered from 0.6 s before the moment to 0.5 s after
-  bool carried = false;        ///< afterwards the whole is carried 60 mm
+  bool carried = false;        ///< afterwards the whole is carried 60 mm, 120 mm for kUnknown
   double pause = 0;            ///< s in which nothing happens, before it
 };
 
@@ -54,7 +54,8 @@ struct ScriptOptions {
   double mistakes = 0.3;     ///< probability of a mistake (made, kept 2 to 4 s, undone) before a step
   double near_misses = 0.3;  ///< probability of a near miss of 5 to 30 mm before a step
   double hidden = 0.2;       ///< probability that a step happens under the hands
-  double undone = 0.1;       ///< probability that a right connection is taken apart and made again
+  double unknown = 0.0;  ///< probability that two parts are joined as in no class, carried and undone, before a step
+  double undone = 0.1;   ///< probability that a right connection is taken apart and made again
 };
 
 /// A whole lesson: the connections in any order, any equal parts in any slot.

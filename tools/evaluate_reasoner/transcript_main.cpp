@@ -60,44 +60,84 @@ std::string Clock(int64_t utime) {
   return text;
 }
 
-void Print(const Task& task, const std::map<std::string, PhraseBook>& books, const std::string& language, bool group) {
+/// One lesson, printed as it goes: a row for what happens and for what the robot says.
+class Transcript {
+ public:
+  Transcript(const std::vector<Task>& tasks, const std::map<std::string, PhraseBook>& books,
+             const LessonOptions& options)
+      : tasks_(tasks), lesson_(tasks, books, options, "CLASS") {}
+
+  /// The child builds one task after the other, and waits for the next one to be introduced.
+  void Print() {
+    for (size_t i = 0; i < tasks_.size(); ++i) {
+      task_ = &tasks_[i];
+      const ScriptedLesson script = PlayScript(*task_, HesitantChild(*task_), {}, kRate, 3);
+      if (start_ == 0) start_ = now_ = script.frames.front().utime;
+      for (const PartPoses& poses : script.frames) Step(poses);
+      for (int k = 0; i + 1 < tasks_.size() && lesson_.task().name == task_->name && k < kMostRest * kRate; ++k)
+        Step(script.frames.back());
+    }
+  }
+
+ private:
+  static constexpr int kRate = 15;       // Hz
+  static constexpr int kMostRest = 120;  // s
+
+  void Step(PartPoses poses) {
+    now_ += 1000000 / kRate;
+    poses.utime = now_;
+    if (robot_id_ != 0 && now_ >= robot_until_) {
+      RobotStatus status;
+      status.session = lesson_.session();
+      status.command_id = robot_id_;
+      status.state = ActState::kDone;
+      lesson_.Handle(status);
+      robot_id_ = 0;
+    }
+    const LessonOutput out = lesson_.Step(poses);
+    for (const GuidanceEvent& e : out.events) Show(e);
+    for (const RobotCommand& c : out.commands) {
+      if (c.kind == ActKind::kAct) Show(c);
+    }
+  }
+  void Show(const GuidanceEvent& e) const {
+    const bool joint = e.kind == "connect" || e.kind == "wrong" || e.kind == "disconnect" || e.kind == "repair";
+    if (joint)
+      std::printf("| %s | *%s %s* (%s and %s) | | |\n", Clock(e.since - start_).c_str(), e.kind.c_str(),
+                  e.subject.c_str(), task_->parts[e.part_a].name.c_str(), task_->parts[e.part_b].name.c_str());
+    if (e.kind == "session")
+      std::printf("| %s | *%s: %s* | | |\n", Clock(now_ - start_).c_str(), e.subject.c_str(), e.reason.c_str());
+  }
+  void Show(const RobotCommand& c) {
+    std::string does;
+    const auto add = [&](const std::string& what) { does += (does.empty() ? "" : ", ") + what; };
+    if (c.point_target) add("points");
+    if (c.look_target) add("looks");
+    if (!c.eye_colour.empty()) add(c.eye_colour + " eyes");
+    std::printf("| %s | %s | %s | %s |\n", Clock(now_ - start_).c_str(), c.phrase_key.c_str(), c.text.c_str(),
+                does.c_str());
+    robot_id_ = c.id;
+    robot_until_ = now_ + static_cast<int64_t>((0.5 + CountCharacters(c.text) / 14.0) * 1e6);
+  }
+
+  const std::vector<Task>& tasks_;
+  const Task* task_ = nullptr;
+  Lesson lesson_;
+  int64_t start_ = 0, now_ = 0, robot_until_ = 0, robot_id_ = 0;  // us
+};
+
+void Print(const std::vector<Task>& tasks, const std::map<std::string, PhraseBook>& books, const std::string& language,
+           bool group) {
   LessonOptions options;
   options.language = language;
   options.group = group;
   options.start_by_itself = true;
-  Lesson lesson({task}, books, options, "CLASS");
-  const ScriptedLesson script = PlayScript(task, HesitantChild(task), {}, 15, 3);
+  options.in_a_row = static_cast<int>(tasks.size());
+  std::string names;
+  for (const Task& task : tasks) names += (names.empty() ? "" : ", then ") + task.name;
   std::printf("\n## %s, %s, %s\n\n| time | what happens | the robot says | and does |\n|---|---|---|---|\n",
-              task.name.c_str(), language.c_str(), group ? "a group" : "one child");
-  const int64_t start = script.frames.front().utime;
-  int64_t robot_until = 0, robot_id = 0;
-  for (const PartPoses& poses : script.frames) {
-    if (robot_id != 0 && poses.utime >= robot_until) {
-      RobotStatus status;
-      status.session = lesson.session();
-      status.command_id = robot_id;
-      status.state = ActState::kDone;
-      lesson.Handle(status);
-      robot_id = 0;
-    }
-    const LessonOutput out = lesson.Step(poses);
-    for (const GuidanceEvent& e : out.events) {
-      const bool shown = e.kind == "connect" || e.kind == "wrong" || e.kind == "disconnect" || e.kind == "repair";
-      if (shown)
-        std::printf("| %s | *%s %s* (%s and %s) | | |\n", Clock(e.since - start).c_str(), e.kind.c_str(),
-                    e.subject.c_str(), task.parts[e.part_a].name.c_str(), task.parts[e.part_b].name.c_str());
-    }
-    for (const RobotCommand& c : out.commands) {
-      if (c.kind != ActKind::kAct) continue;
-      std::string does = c.point_target ? "points, " : "";
-      if (c.look_target) does += "looks, ";
-      if (!c.eye_colour.empty()) does += c.eye_colour + " eyes";
-      std::printf("| %s | %s | %s | %s |\n", Clock(poses.utime - start).c_str(), c.phrase_key.c_str(), c.text.c_str(),
-                  does.c_str());
-      robot_id = c.id;
-      robot_until = poses.utime + static_cast<int64_t>((0.5 + CountCharacters(c.text) / 14.0) * 1e6);
-    }
-  }
+              names.c_str(), language.c_str(), group ? "a group" : "one child");
+  Transcript(tasks, books, options).Print();
 }
 
 }  // namespace
@@ -106,17 +146,23 @@ int main(int argc, char** argv) {
   CLI::App app("Prints simulated lessons in every language");
   std::vector<std::string> tasks;
   std::string phrases;
+  bool in_a_row = false;
   app.add_option("tasks", tasks, "task files")->required()->check(CLI::ExistingFile);
   app.add_option("--phrases", phrases, "folder of phrase files instead of the shipped ones");
+  app.add_flag("--in-a-row", in_a_row, "one lesson of all the tasks, after the lessons of one each");
   CLI11_PARSE(app, argc, argv);
   try {
     const auto books = LoadPhraseBooks(phrases.empty() ? ShippedPhrases() : std::filesystem::path(phrases));
     std::printf(
         "# Simulated lessons\n\nMade by `coach-lesson-transcript`. The child thinks for long, joins two pieces "
         "that do not belong together, misses narrowly, and ends well.\n");
+    std::vector<Task> all;
     for (const std::string& file : tasks) {
-      const Task task = LoadTask(file);
-      for (const auto& [language, book] : books) Print(task, books, language, file != tasks.front());
+      all.push_back(LoadTask(file));
+      for (const auto& [language, book] : books) Print({all.back()}, books, language, all.size() > 1);
+    }
+    for (const auto& [language, book] : books) {
+      if (in_a_row) Print(all, books, language, true);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "coach-lesson-transcript: %s\n", error.what());

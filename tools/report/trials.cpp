@@ -19,7 +19,8 @@ bool IsJoint(const std::string& kind) { return kind == "connect" || kind == "wro
 class TrialFinder {
  public:
   void Take(const GuidanceEvent& e) {
-    if (e.kind == "operator" && e.subject == "choose_task" && !Refused(e)) {
+    const bool by_itself = e.kind == "session" && e.subject == "next_task";
+    if (by_itself || (e.kind == "operator" && e.subject == "choose_task" && !Refused(e))) {
       task_ = e.reason;
       if (open_) Begin(e.utime);
     } else if (e.kind == "operator" && e.subject == "start" && !Refused(e)) {

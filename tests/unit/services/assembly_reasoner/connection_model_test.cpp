@@ -106,6 +106,123 @@ TEST_F(CoachModel, NoEvidenceNoClaim) {
   EXPECT_LT(far.log_odds[0], -8);
 }
 
+/// What a made joint is told in one frame.
+struct Look {
+  double visible = 0.9;
+  double gap = 0;    ///< m between the surfaces
+  double speed = 0;  ///< m/s of the second part
+  bool misfit = false, pressed = false;
+};
+
+class BreakOfAMadeJoint : public CoachModel {
+ protected:
+  /// Judges one frame, a 30th of a second later, of the joint opened by `open` m to the side.
+  PairVerdict Frame(double open, const Look& look = {}, int decided = 0) {
+    utime_ += 33333;
+    std::normal_distribution<double> noise(0, 0.0003);
+    PartEstimate a, b;
+    a.status = b.status = PartStatus::kTracked;
+    a.visible_fraction = b.visible_fraction = look.visible;
+    b.velocity[0] = look.speed;
+    a.X_TP.translation().z() = noise(random_);
+    PairEvidence pair;
+    pair.part_b = 2;
+    pair.X_AB = Corner(open + noise(random_));
+    pair.covariance.setZero();
+    pair.covariance.diagonal() << Vector3::Constant(1e-6), Vector3::Constant(1e-4);
+    pair.surface_distance = look.gap;
+    b.X_TP = a.X_TP * pair.X_AB;
+    PairView view{utime_, 0, 2, &a, &b, &pair};
+    view.misfit = look.misfit;
+    view.pressed = look.pressed;
+    view.decided = decided;
+    return model_->Judge(view);
+  }
+  void Made() {
+    for (int i = 0; i < 30; ++i) Frame(0);
+  }
+  /// The joint slides open to 12 mm in half a second and stays there for as long; is that believed?
+  bool Opens(const Look& look) {
+    Made();
+    PairVerdict verdict;
+    for (int i = 1; i <= 30; ++i) verdict = Frame(0.012 * std::min(1.0, i / 15.0), look);
+    return verdict.has_evidence && verdict.log_odds[0] < -2;
+  }
+};
+
+TEST_F(BreakOfAMadeJoint, SeenAndSlowItIsBelieved) { EXPECT_TRUE(Opens({})); }
+
+TEST_F(BreakOfAMadeJoint, APartThatIsAllButCoveredProvesNothing) {
+  EXPECT_FALSE(Opens({.visible = 0.1}));
+  EXPECT_TRUE(Opens({.visible = 0.15}));
+}
+
+TEST_F(BreakOfAMadeJoint, APartInsideAnotherProvesNothing) {
+  EXPECT_FALSE(Opens({.misfit = true}));
+  EXPECT_FALSE(Opens({.gap = 0.009, .misfit = true}));
+  EXPECT_FALSE(Opens({.pressed = true}));
+  EXPECT_TRUE(Opens({.gap = 0.009, .pressed = true})) << "there is air between the two";
+}
+
+TEST_F(BreakOfAMadeJoint, InFastMotionThereHasToBeAirBetweenTheParts) {
+  EXPECT_FALSE(Opens({.gap = 0.002, .speed = 0.3}));
+  EXPECT_TRUE(Opens({.gap = 0.002, .speed = 0.1}));
+  EXPECT_TRUE(Opens({.gap = 0.012, .speed = 0.3}));
+}
+
+TEST_F(BreakOfAMadeJoint, AJumpIsTheTrackersAndOnlyWhatLastsIsBelieved) {
+  Made();
+  const CoachConnectionModelOptions options;
+  const int64_t jumped = utime_ + 33333;
+  bool believed = false;
+  int64_t when = 0;
+  for (int i = 0; i < 90 && !believed; ++i) {
+    const PairVerdict verdict = Frame(0.060, {.gap = 0.02});  // 60 mm in a 30th of a second: 1.8 m/s
+    believed = verdict.has_evidence && verdict.log_odds[0] < -2;
+    when = utime_;
+  }
+  EXPECT_TRUE(believed);
+  EXPECT_NEAR(static_cast<double>(when - jumped) * 1e-6, options.jump_time, 0.1);
+}
+
+TEST_F(BreakOfAMadeJoint, AJumpAwayAndBackLeavesNoTrace) {
+  Made();
+  PairVerdict verdict;
+  for (int i = 0; i < 15; ++i) {
+    verdict = Frame(0.060);
+    EXPECT_FALSE(verdict.has_evidence && verdict.log_odds[0] < 0);
+  }
+  for (int i = 0; i < 30; ++i) verdict = Frame(0);
+  ASSERT_TRUE(verdict.has_evidence);
+  EXPECT_GT(verdict.log_odds[0], 3);
+}
+
+TEST_F(BreakOfAMadeJoint, WhatIsMeasuredClosedIsNotOpenedByWhatWasMeasuredBefore) {
+  Made();
+  for (int i = 0; i < 45; ++i) Frame(0.008, {.pressed = true});  // covered and misplaced
+  for (int i = 0; i < 15; ++i) {
+    const PairVerdict verdict = Frame(0);
+    EXPECT_FALSE(verdict.has_evidence && verdict.log_odds[0] < 0) << i;
+  }
+}
+
+TEST_F(BreakOfAMadeJoint, WithoutAJointAPartInsideAnotherClaimsNothingButAJoint) {
+  for (int i = 0; i < 30; ++i) EXPECT_FALSE(Frame(0.012, {.misfit = true}, -1).has_evidence);
+  PairVerdict verdict;
+  for (int i = 0; i < 30; ++i) verdict = Frame(0, {.misfit = true}, -1);
+  EXPECT_TRUE(verdict.has_evidence);
+}
+
+TEST_F(BreakOfAMadeJoint, PartsMeasuredInEachOtherTouch) {
+  PairVerdict inside, beside;
+  for (int i = 0; i < 30; ++i) inside = Frame(-0.006, {.gap = -0.0065}, -1);
+  EXPECT_GT(inside.log_odds[0], 2) << "a near miss would be measured further off still";
+  EXPECT_LT(inside.log_odds[1], -4);
+  model_ = MakeCoachConnectionModel(task_, contacts_);
+  for (int i = 0; i < 30; ++i) beside = Frame(0.006, {.gap = 0.0065}, -1);
+  EXPECT_LT(beside.log_odds[0], -2);
+}
+
 TEST_F(CoachModel, DatesTheArrivalBack) {
   Hold(Corner(0.05), 1, 0.0005);
   const int64_t moment = utime_;

@@ -31,7 +31,8 @@ const std::map<std::string, PhraseBook>& Books() {
 
 class Classroom {
  public:
-  explicit Classroom(uint64_t seed, LessonOptions options = {}) : options_(options), random_(seed) {
+  explicit Classroom(uint64_t seed, LessonOptions options = {}, std::vector<Task> tasks = {Rectangle()})
+      : tasks_(std::move(tasks)), options_(options), random_(seed) {
     options_.seed = seed;
     NewLesson();
   }
@@ -42,6 +43,10 @@ class Classroom {
     Join(kPartInSlot[c.slot_a], kPartInSlot[c.slot_b], c.X_AB);
   }
   void Undo(int a, int b) { joints_.erase({a, b}); }
+  void Build() {
+    for (int c = 0; c < 4; ++c) JoinRight(c);
+  }
+  void TakeApart() { joints_.clear(); }
   bool Joined(int a, int b) const { return joints_.contains({a, b}) || joints_.contains({b, a}); }
 
   LessonOutput Operator(OperatorKind kind, const std::string& argument = "") {
@@ -62,6 +67,12 @@ class Classroom {
     restarted_ = now_;
   }
   void Run(double seconds) {
+    const int before = refused;
+    RunOn(seconds);
+    EXPECT_EQ(refused, before);
+  }
+  /// The same where poses may be refused, as in the second after a change of task.
+  void RunOn(double seconds) {
     for (int i = 0; i < static_cast<int>(seconds / 0.2); ++i) Frame();
   }
 
@@ -75,6 +86,7 @@ class Classroom {
   };
   std::vector<Said> said;
   std::vector<GuidanceEvent> events;
+  int refused = 0;  // poses
   bool moving = false, hidden = false, robot_reports = true;
   std::function<double(int64_t)> hand_speed = [](int64_t) { return 0.0; };  // m/s at a time in us
   int64_t now() const { return now_; }
@@ -101,7 +113,7 @@ class Classroom {
  private:
   static constexpr std::array<int, 4> kPartInSlot{0, 2, 1, 3};  // left, front, right, back
 
-  void NewLesson() { lesson_ = std::make_unique<Lesson>(std::vector<Task>{Rectangle()}, Books(), options_, "TEST"); }
+  void NewLesson() { lesson_ = std::make_unique<Lesson>(tasks_, Books(), options_, "TEST"); }
 
   void Frame() {
     now_ += kFrame;
@@ -114,7 +126,7 @@ class Classroom {
       lesson_->Handle(status);
     }
     const LessonOutput out = lesson_->Step(Poses());
-    ASSERT_TRUE(out.accepted) << out.refused;
+    if (!out.accepted) ++refused;
     Note(out);
   }
 
@@ -169,10 +181,9 @@ class Classroom {
     state_ = out.state;
     events.insert(events.end(), out.events.begin(), out.events.end());
     for (const RobotCommand& command : out.commands) {
-      if (command.kind != ActKind::kAct) {
-        robot_id_ = 0;  // stop, cancel: the robot falls silent
-        continue;
-      }
+      if (command.kind == ActKind::kCancel) robot_until_ = now_;  // the robot falls silent and reports it
+      if (command.kind == ActKind::kStop) robot_id_ = 0;
+      if (command.kind != ActKind::kAct) continue;
       const bool operators = command.priority >= Priority::kOperator;
       EXPECT_TRUE(operators || robot_id_ == 0 || !robot_reports) << "two sentences at once: " << command.text;
       robot_id_ = command.id;
@@ -181,6 +192,7 @@ class Classroom {
     }
   }
 
+  std::vector<Task> tasks_;
   LessonOptions options_;
   std::mt19937_64 random_;
   std::unique_ptr<Lesson> lesson_;
@@ -207,6 +219,20 @@ TEST(Lesson, FromGreetingToTheLastPraise) {
   EXPECT_EQ(room.Count("complete"), 1);
   EXPECT_EQ(room.Count("praise"), 2);
   EXPECT_EQ(room.Count("introduction"), 1);
+}
+
+TEST(Lesson, TheLastPraiseIsSaidEvenIfTheRobotIsBusyForLong) {
+  Classroom room(1);
+  room.Run(1);
+  room.Operator(OperatorKind::kStart);
+  room.Run(20);
+  room.robot_reports = false;  // and is taken to speak for its patience
+  room.Operator(OperatorKind::kSay, std::string(120, 'a'));
+  room.Build();
+  room.Run(8);
+  EXPECT_EQ(room.Count("complete"), 0);
+  room.Run(10);
+  EXPECT_EQ(room.Count("complete"), 1);
 }
 
 TEST(Lesson, StartedBeforeTheFirstPictureItBeginsWithIt) {
@@ -300,6 +326,21 @@ TEST(Lesson, ATurnedPieceIsNamedAsSuch) {
   EXPECT_EQ(room.Count("wrong_turned"), 1);
 }
 
+TEST(Lesson, TwoThatBelongTogetherAreNotSaidToBelongElsewhere) {
+  const auto& mistakes = Rectangle().mistakes;
+  const auto line = std::find_if(mistakes.begin(), mistakes.end(),
+                                 [](const Mistake& m) { return m.type_a != m.type_b && m.name.rfind("line", 0) == 0; });
+  ASSERT_NE(line, mistakes.end());
+  Classroom room(5);
+  room.Run(1);
+  room.Operator(OperatorKind::kStart);
+  room.Run(20);
+  room.Join(0, 2, line->X_AB);
+  room.Run(10);
+  EXPECT_EQ(room.Count("wrong_unknown"), 1);
+  EXPECT_EQ(room.Count("wrong"), 0);
+}
+
 TEST(Lesson, ARestartSaysNothingTwiceAndLosesNothing) {
   Classroom room(6);
   room.Operator(OperatorKind::kStart);
@@ -375,6 +416,145 @@ TEST(Lesson, PartsOutOfSightAreSaidOnceAndNothingElse) {
   EXPECT_EQ(room.state().phase, Phase::kWait);
 }
 
+/// A lesson of three rectangles one after the other, the second and third called `second` and `third`; a fourth task
+/// that the station has, but that is not of the lesson.
+std::vector<Task> FourTasks() {
+  std::vector<Task> tasks(4, Rectangle());
+  for (size_t i = 1; i < 4; ++i) tasks[i].name = std::array{"second", "third", "fourth"}[i - 1];
+  return tasks;
+}
+LessonOptions ThreeInARow() {
+  LessonOptions options;
+  options.in_a_row = 3;
+  options.task_pause = 20;
+  return options;
+}
+/// Up to the moment when the lesson has said that another task follows.
+void BuildAndRest(Classroom& room) {
+  room.RunOn(12);
+  room.Build();
+  for (int i = 0; i < 100 && (room.said.empty() || room.said.back().command.phrase_key != "next_task"); ++i)
+    room.Run(0.2);
+  ASSERT_EQ(room.Keys().back(), "next_task");
+}
+
+TEST(Lesson, TheNextTaskIsIntroducedByItselfAfterThePause) {
+  Classroom room(20, ThreeInARow(), FourTasks());
+  room.Run(1);
+  room.Operator(OperatorKind::kStart);
+  BuildAndRest(room);
+  EXPECT_EQ(room.Count("complete"), 1);
+  EXPECT_EQ(room.state().phase, Phase::kComplete);
+  const int64_t told = room.said.back().at;
+  const size_t said = room.said.size();
+  room.Run(5);
+  room.TakeApart();  // which is not a step back: nothing is said about it
+  room.Run(15);
+  EXPECT_EQ(room.said.size(), said);
+  room.RunOn(10);
+  ASSERT_GT(room.said.size(), said);
+  EXPECT_EQ(room.said[said].command.phrase_key, "introduction_again") << "nobody is greeted twice";
+  EXPECT_NEAR(static_cast<double>(room.said[said].at - told) * 1e-6, 20 + 4, 3) << "pause after the sentence";
+  EXPECT_EQ(room.state().task, "second");
+  EXPECT_EQ(room.state().session, 101);
+  ASSERT_NE(room.Find("session"), nullptr);
+  EXPECT_EQ(room.Find("session")->subject, "next_task");
+  EXPECT_EQ(room.Find("session")->reason, "second");
+  room.Run(10);
+  EXPECT_EQ(room.Keys().back(), "step");
+}
+
+TEST(Lesson, TheLastTaskOfALessonIsFollowedByNone) {
+  Classroom room(21, ThreeInARow(), FourTasks());
+  room.Run(1);
+  room.Operator(OperatorKind::kStart);
+  for (int task = 0; task < 2; ++task) {
+    BuildAndRest(room);
+    room.TakeApart();
+    room.RunOn(30);
+  }
+  EXPECT_EQ(room.state().task, "third");
+  room.Build();
+  room.Run(60);
+  EXPECT_EQ(room.Keys().back(), "complete");
+  EXPECT_EQ(room.state().task, "third");
+  EXPECT_EQ(room.Count("introduction"), 1);
+  EXPECT_EQ(room.Count("introduction_again"), 2);
+  EXPECT_EQ(room.Count("next_task"), 2);
+}
+
+TEST(Lesson, PosesOfTheFormerTaskAreNotTakenForThoseOfTheNext) {
+  Classroom room(22, ThreeInARow(), FourTasks());
+  room.Run(1);
+  room.Operator(OperatorKind::kStart);
+  BuildAndRest(room);
+  room.Run(5);
+  room.Operator(OperatorKind::kSkip);
+  EXPECT_EQ(room.state().task, "second");
+  const size_t said = room.said.size();
+  room.RunOn(0.8);  // the tracker still sends the finished rectangle
+  EXPECT_EQ(room.refused, 4);
+  EXPECT_EQ(room.state().made, 0);
+  EXPECT_EQ(room.said.size(), said);
+  room.TakeApart();
+  room.RunOn(3);
+  EXPECT_EQ(room.Keys().back(), "introduction_again");
+  EXPECT_EQ(room.state().made, 0);
+}
+
+TEST(Lesson, TheOperatorOverrulesThePauseBetweenTasks) {
+  for (const OperatorKind kind : {OperatorKind::kStart, OperatorKind::kSkip}) {
+    Classroom room(23, ThreeInARow(), FourTasks());
+    room.Run(1);
+    room.Operator(OperatorKind::kStart);
+    BuildAndRest(room);
+    room.TakeApart();
+    room.Operator(kind);
+    EXPECT_EQ(room.state().task, "second") << "at once";
+    room.RunOn(2);
+    EXPECT_EQ(room.Keys().back(), "introduction_again");
+    EXPECT_EQ(room.state().session, 101) << "the same lesson";
+  }
+  Classroom room(24, ThreeInARow(), FourTasks());
+  room.Run(1);
+  room.Operator(OperatorKind::kStart);
+  BuildAndRest(room);
+  EXPECT_THAT(room.Operator(OperatorKind::kHelp).events.back().reason, testing::StartsWith("refused"));
+  room.Operator(OperatorKind::kPause);
+  room.RunOn(100);
+  EXPECT_EQ(room.state().task, Rectangle().name);
+  EXPECT_EQ(room.state().phase, Phase::kPaused);
+  room.Operator(OperatorKind::kResume);
+  room.Run(15);
+  EXPECT_EQ(room.state().task, Rectangle().name) << "the pause begins anew";
+  room.TakeApart();
+  room.Operator(OperatorKind::kChooseTask, "fourth");
+  room.RunOn(15);
+  EXPECT_EQ(room.state().task, "fourth");
+  EXPECT_EQ(room.Keys().back(), "step");
+  room.Build();
+  room.Run(60);
+  EXPECT_EQ(room.state().task, "fourth") << "no task of the lesson follows one that is not of it";
+  EXPECT_EQ(room.Count("next_task"), 1);
+}
+
+TEST(Lesson, ARestartInThePauseBetweenTasksGoesOnToTheNext) {
+  Classroom room(25, ThreeInARow(), FourTasks());
+  room.Run(1);
+  room.Operator(OperatorKind::kStart);
+  BuildAndRest(room);
+  room.Run(10);
+  const size_t said = room.said.size();
+  room.Restart();
+  room.TakeApart();
+  room.Run(15);
+  EXPECT_EQ(room.said.size(), said);
+  room.RunOn(15);
+  EXPECT_EQ(room.state().task, "second");
+  ASSERT_GT(room.said.size(), said);
+  EXPECT_EQ(room.said[said].command.phrase_key, "introduction_again");
+}
+
 /// One random session; the rules of speech are checked over everything that was said.
 void RandomSession(uint64_t seed, int& utterances) {
   Classroom room(seed);
@@ -408,7 +588,7 @@ void RandomSession(uint64_t seed, int& utterances) {
       room.Operator(kind, chance(0.5) ? "corner_2" : "el");
     }
     room.moving = chance(0.4);
-    room.Run(std::uniform_real_distribution<double>(0.5, chance(0.2) ? 60 : 12)(random));
+    room.RunOn(std::uniform_real_distribution<double>(0.5, chance(0.2) ? 60 : 12)(random));
   }
   const std::set<std::string> unsolicited{"step", "hedge", "lost"};
   int64_t last_unsolicited = 0, last_event = 0, last_command = 0, last_wrong = 0;

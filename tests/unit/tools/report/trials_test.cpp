@@ -77,6 +77,18 @@ TEST_F(TrialsTest, AnotherTaskOrAnotherStartEndsATrial) {
   EXPECT_EQ(FindTrials(session_)[2].task, "rectangle");
 }
 
+TEST_F(TrialsTest, TheNextTaskOfALessonIsATrialOfItsOwn) {
+  Event(1, "operator", "start");
+  Event(3, "phase", "announce");
+  Event(25, "phase", "complete");
+  Event(50, "session", "next_task", -1, -1, "square");
+  Event(50, "phase", "introduction");
+  Event(52, "phase", "announce");
+  Event(70, "phase", "complete");
+  EXPECT_THAT(Spans(), ElementsAre("1-25!", "50-70!"));
+  EXPECT_EQ(FindTrials(session_)[1].task, "square");
+}
+
 TEST_F(TrialsTest, ALogThatBeginsInTheMiddleOrHasNoLesson) {
   Event(7, "connect", "corner_1");
   EXPECT_THAT(Spans(), ElementsAre("0-7?"));
