@@ -22,7 +22,7 @@ constexpr int kUnknownLabel = -2;  ///< a rigid contact in no class
 struct AssemblyBeliefOptions {
   double forgetting_time = 0.04;  ///< s, in which new evidence replaces old; 0: at once
   double price_connection = 0.7;  ///< nats against a connection of the task that is not yet decided
-  double price_mistake = 1.0;     ///< nats, the same for a mistake
+  double price_mistake = 0.5;     ///< nats, the same for a mistake
   double price_unknown = 4.0;     ///< nats, the same for an unknown contact
   double stickiness = 2.0;        ///< nats for a label that is decided
   double implied_odds = 6.0;      ///< nats of a joint that the rest of its ring makes
