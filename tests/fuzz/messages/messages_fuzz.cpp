@@ -9,22 +9,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/bus/decode_message.h"
 #include "common/bus/image_messages.h"
-#include "common/bus/message_check.h"
 #include "common/bus/messages.h"
 
 using namespace coach;
 
 namespace {
-
-template <class M>
-M DecodeMessage(std::span<const uint8_t> bytes) {
-  CheckBeforeDecoding(std::type_identity<M>(), bytes);
-  M message;
-  const int size = static_cast<int>(bytes.size());
-  if (message.decode(bytes.data(), 0, size) != size) throw std::invalid_argument("not a message of this type");
-  return message;
-}
 
 template <class M>
 void Use(std::span<const uint8_t> bytes) {
