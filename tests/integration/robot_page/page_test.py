@@ -92,6 +92,13 @@ class PageTest(unittest.TestCase):
             const px = c.clientWidth / 2 + scale * arguments[0], py = c.clientHeight / 2 + scale * (0.14 - arguments[1]);
             return [...c.getContext('2d').getImageData(Math.round(px * r), Math.round(py * r), 1, 1).data]""", x, y)
 
+    def wait_for_pixel(self, holds, what, seconds=10):
+        """The table is drawn with the browser's next picture, a moment after its description."""
+        until = time.monotonic() + seconds
+        while not holds(*self.pixel(-0.2, 0.05)[:3]):
+            self.assertLess(time.monotonic(), until, f"expected {what}, found the colour {self.pixel(-0.2, 0.05)}")
+            time.sleep(0.05)
+
     def test_says_points_and_looks_in_both_languages(self):
         still = self.drawing()
         self.robot.order(act={"id": 1, "language": "en", "text": ENGLISH, "point": [0.22, 0.1, 0.02],
@@ -120,13 +127,9 @@ class PageTest(unittest.TestCase):
         self.assertEqual(self.browser.log(), [])
 
     def test_table_is_live(self):
-        red, green, blue = self.pixel(-0.2, 0.05)[:3]
-        self.assertGreater(blue, red + 60)
+        self.wait_for_pixel(lambda red, green, blue: blue > red + 60, "the blue part")
         self.robot.order(scene={"parts": [[0.3, -0.2, 0]] + PARTS[1:]})
-        self.browser.wait_for("return document.querySelector('#table') !== null")
-        time.sleep(0.5)
-        red, green, blue = self.pixel(-0.2, 0.05)[:3]
-        self.assertGreater(red, blue)  # wood again
+        self.wait_for_pixel(lambda red, green, blue: red > blue, "wood, the part has gone")
 
     def test_sound_needs_a_touch_and_the_page_tells(self):
         self.robot.order(act={"id": 1, "language": "en", "text": ENGLISH})
