@@ -112,8 +112,8 @@ TEST_F(CameraMotionTest, AJoltOverASpeckledTableIsNoticed) {
       for (int x = 0; x < 640; ++x) {
         const Vector3 p =
             X_CT.inverse() * TestCamera().BackProject(Eigen::Vector2d(x, y), 1e-3 * exact.at<uint16_t>(y, x));
-        const auto cell = static_cast<uint32_t>(static_cast<int>(std::floor(p.x() / 0.004)) * 73856093) ^
-                          static_cast<uint32_t>(static_cast<int>(std::floor(p.y() / 0.004)) * 19349663);
+        const auto cell = static_cast<uint32_t>(static_cast<int>(std::floor(p.x() / 0.004))) * 73856093u ^
+                          static_cast<uint32_t>(static_cast<int>(std::floor(p.y() / 0.004))) * 19349663u;
         const uint8_t grey = cell * 2654435761u >> 29 == 0 ? 130 : 150;
         drawn.picture.colour.at<cv::Vec3b>(y, x) = {grey, grey, grey};
       }
