@@ -17,16 +17,15 @@ double DistanceToSegment(const Vector3& p, const Vector3& a, const Vector3& b) {
 }
 
 struct ArmExtent {
-  double lowest, nearest_child;  // m, z_T and y_T of the lowest and the most advanced of elbow, wrist, hand
+  double lowest, farthest;  // m, z_T of the lowest and x_R of the most advanced of elbow, wrist, hand
 };
 
 ArmExtent ExtentOf(Arm arm, const JointAngles& angles, const Pose& X_TR) {
   const ArmPoints points = ForwardKinematics(arm, angles);
-  ArmExtent extent{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  ArmExtent extent{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
   for (const Vector3* p_R : {&points.p_R_elbow, &points.p_R_wrist, &points.p_R_hand}) {
-    const Vector3 p_T = X_TR * *p_R;
-    extent.lowest = std::min(extent.lowest, p_T.z());
-    extent.nearest_child = std::min(extent.nearest_child, p_T.y());
+    extent.lowest = std::min(extent.lowest, (X_TR * *p_R).z());
+    extent.farthest = std::max(extent.farthest, p_R->x());
   }
   return extent;
 }
@@ -106,12 +105,12 @@ Obstacle FirstObstacle(Arm arm, const JointPath& path, double from_s, const Surr
   const ArmExtent start = ExtentOf(arm, path.points.front().angles, X_TR);
   const ArmExtent goal = ExtentOf(arm, path.points.back().angles, X_TR);
   const double floor = std::min({options.table_margin, start.lowest, goal.lowest}) - kHeightTolerance;
-  const double child_line = std::min(options.child_line, start.nearest_child);
+  const double farthest = std::max(options.child_distance, start.farthest);
   for (const JointPath::Point& point : path.points) {
     if (point.time < from_s) continue;
     const ArmExtent extent = ExtentOf(arm, point.angles, X_TR);
     if (extent.lowest < floor) return Obstacle::kTable;
-    if (extent.nearest_child < child_line) return Obstacle::kChild;
+    if (extent.farthest > farthest) return Obstacle::kChild;
     for (const ForeignBlob& blob : surroundings.hands) {
       if (Clearance(arm, point.angles, X_TR, blob) < options.hand_clearance) return Obstacle::kHand;
     }

@@ -17,7 +17,7 @@ struct GestureOptions {
   double table_margin = 0.02;     ///< m, least height of elbow, wrist and hand above the table
   double hand_clearance = 0.15;   ///< m, least distance from the surface of a foreign blob to the arm
   double arm_hysteresis = 0.03;   ///< m, how far across the middle a target must be to change the arm
-  double child_line = -0.25;      ///< m, the arm stays at y_T above this line: beyond it the child sits
+  double child_distance = 0.75;   ///< m ahead of the torso, no arm goes farther: there the child sits
   double largest_residual = 0.5;  ///< rad, an arm that would miss by more than this is not raised
 };
 

@@ -3,8 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
 
 #include "services/robot_bridge/kinematics.h"
 
@@ -134,18 +132,6 @@ std::vector<JointAngles> CalibrationPoses(Arm arm) {
     result.push_back(ClampToLimits(angles));
   }
   return result;
-}
-
-std::string StationLines(const Pose& X_TR) {
-  constexpr double kDegree = std::numbers::pi / 180;
-  const Matrix3& R = X_TR.linear();
-  const double yaw = std::atan2(R(1, 0), R(0, 0)), pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
-               roll = std::atan2(R(2, 1), R(2, 2));
-  char lines[256];
-  std::snprintf(lines, sizeof lines, "  position: [%.4f, %.4f, %.4f]\n  roll_pitch_yaw: [%.2f, %.2f, %.2f]\n",
-                X_TR.translation().x(), X_TR.translation().y(), X_TR.translation().z(), roll / kDegree, pitch / kDegree,
-                yaw / kDegree);
-  return lines;
 }
 
 }  // namespace coach

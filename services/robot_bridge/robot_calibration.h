@@ -33,7 +33,4 @@ CalibrationResult CalibrateRobot(const std::vector<CalibrationSample>& samples);
 /// Eight poses of an arm, spread wide, the hand turned this way and that, all high above the robot's lap.
 std::vector<JointAngles> CalibrationPoses(Arm arm);
 
-/// The `position` and `roll_pitch_yaw` lines of the station file.
-std::string StationLines(const Pose& X_TR);
-
 }  // namespace coach

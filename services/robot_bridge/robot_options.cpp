@@ -1,5 +1,7 @@
 #include "services/robot_bridge/robot_options.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 
@@ -7,6 +9,8 @@ namespace coach {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+const Vector3 kPosition(0, -0.5, 0.08);  // m
+const Vector3 kDegrees(0, 0, 90);        // roll, pitch, yaw
 
 Vector3 ReadVector(const YamlNode& node, const std::string& key, const Vector3& otherwise, double limit) {
   const std::optional<YamlNode> value = node.Find(key);
@@ -18,15 +22,16 @@ Vector3 ReadVector(const YamlNode& node, const std::string& key, const Vector3& 
   return result;
 }
 
-Pose ReadPose(const YamlNode& robot) {
-  const Pose otherwise = DefaultRobotPose();
-  const Vector3 position = ReadVector(robot, "position", otherwise.translation(), 5);
-  const Vector3 degrees = ReadVector(robot, "roll_pitch_yaw", Vector3(0, 0, -90), 360);
+Pose PoseOf(const Vector3& position, const Vector3& degrees) {
   const Matrix3 rotation = (Eigen::AngleAxisd(degrees.z() * kDegree, Vector3::UnitZ()) *
                             Eigen::AngleAxisd(degrees.y() * kDegree, Vector3::UnitY()) *
                             Eigen::AngleAxisd(degrees.x() * kDegree, Vector3::UnitX()))
                                .toRotationMatrix();
   return MakePose(rotation, position);
+}
+
+Pose ReadPose(const YamlNode& robot) {
+  return PoseOf(ReadVector(robot, "position", kPosition, 5), ReadVector(robot, "roll_pitch_yaw", kDegrees, 360));
 }
 
 VirtualRobotOptions ReadVirtual(const YamlNode& node) {
@@ -59,8 +64,13 @@ NaoOptions ReadNao(const YamlNode& node) {
 
 }  // namespace
 
-Pose DefaultRobotPose() {
-  return MakePose(Eigen::AngleAxisd(-90 * kDegree, Vector3::UnitZ()).toRotationMatrix(), Vector3(0, 0.5, 0.08));
+Pose DefaultRobotPose() { return PoseOf(kPosition, kDegrees); }
+
+Vector3 SeatDegrees(const Pose& X_TR) {
+  const Matrix3& R = X_TR.linear();
+  return Vector3(std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
+                 std::atan2(R(1, 0), R(0, 0))) /
+         kDegree;
 }
 
 RobotOptions ReadRobotOptions(const YamlNode& robot) {
@@ -73,7 +83,7 @@ RobotOptions ReadRobotOptions(const YamlNode& robot) {
       robot.GetInRange("heartbeat_timeout", options.conductor.heartbeat_timeout_s, 2, 600);
   GestureOptions& gesture = options.conductor.gesture;
   gesture.speed_fraction = robot.GetInRange("speed", gesture.speed_fraction, 0.05, 0.3);
-  gesture.child_line = robot.GetInRange("child_line", gesture.child_line, -5, 5);
+  gesture.child_distance = robot.GetInRange("child_distance", gesture.child_distance, 0.1, 5);
   gesture.hand_clearance = robot.GetInRange("hand_clearance", gesture.hand_clearance, 0.05, 1);
   if (const auto node = robot.Find("virtual")) options.virtual_robot = ReadVirtual(*node);
   if (const auto node = robot.Find("nao")) options.nao = ReadNao(*node);

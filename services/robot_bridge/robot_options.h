@@ -19,8 +19,11 @@ struct RobotOptions {
   NaoOptions nao;
 };
 
-/// The robot opposite the child, half a metre from the middle of the table, low.
+/// The robot opposite the child, below the camera: half a metre from the middle of the table, low.
 Pose DefaultRobotPose();
+
+/// `roll_pitch_yaw` of a seat (degrees) as the station file has it: turned about z, then the new y, then the new x.
+Vector3 SeatDegrees(const Pose& X_TR);
 
 /// Reads the options; it may be an empty map (all defaults).
 /// @throws ConfigurationError naming file, line, key, what was found and expected.

@@ -5,10 +5,11 @@
 namespace coach {
 namespace {
 
-constexpr double kSpeed = 0.12;         // share of the joints' greatest speed
-constexpr int64_t kSettle = 1200000;    // us, after the motion: the arm swings, the tracker catches up
-constexpr int64_t kPatience = 4000000;  // us, to see the part
-constexpr size_t kFrames = 15;          // frames that make a sample
+constexpr double kSpeed = 0.12;             // share of the joints' greatest speed
+constexpr int64_t kSettle = 1200000;        // us, after the motion: the arm swings, the tracker catches up
+constexpr int64_t kPatience = 4000000;      // us, to see the part
+constexpr int64_t kLongestAway = 60000000;  // us, without the robot
+constexpr size_t kFrames = 15;              // frames that make a sample
 constexpr double kConfidence = 0.3;
 
 Vector3 MedianOf(std::vector<Vector3> points) {
@@ -24,11 +25,11 @@ Vector3 MedianOf(std::vector<Vector3> points) {
 
 }  // namespace
 
-CalibrationRun::CalibrationRun(BackEnd& robot, Arm arm, int part, std::function<void(const std::string&)> say)
-    : robot_(robot), arm_(arm), part_(part), say_(std::move(say)), poses_(CalibrationPoses(arm)) {}
+CalibrationRun::CalibrationRun(BackEnd& robot, Arm arm, int part)
+    : robot_(robot), arm_(arm), part_(part), poses_(CalibrationPoses(arm)) {}
 
 void CalibrationRun::See(const PartPoses& poses) {
-  if (!looking_ || part_ >= static_cast<int>(poses.parts.size())) return;
+  if (!looking_ || part_ < 0 || part_ >= static_cast<int>(poses.parts.size())) return;
   const PartEstimate& part = poses.parts[static_cast<size_t>(part_)];
   if (part.status == PartStatus::kTracked && part.confidence >= kConfidence) seen_.push_back(part.X_TP.translation());
 }
@@ -42,17 +43,43 @@ void CalibrationRun::MoveTo(const JointAngles& goal, int64_t now) {
 
 void CalibrationRun::TakeSample() {
   const auto angles = robot_.MeasuredAngles();
-  const std::string name = "pose " + std::to_string(next_) + " of " + std::to_string(poses_.size());
-  if (seen_.size() < kFrames || !angles) {
-    say_(name + ": the part was not seen well (" + std::to_string(seen_.size()) + " frames); left out");
-    return;
-  }
-  samples_.push_back({arm_, *angles, MedianOf(seen_)});
-  say_(name + ": seen");
+  const bool used = seen_.size() >= kFrames && angles;
+  reports_.push_back({seen_.size(), used});
+  if (used) samples_.push_back({arm_, *angles, MedianOf(seen_)});
+}
+
+void CalibrationRun::Fail(const std::string& problem) {
+  state_ = State::kFailed;
+  problem_ = problem;
+}
+
+void CalibrationRun::Finish() {
+  result_ = CalibrateRobot(samples_);
+  if (!result_.success) return Fail(result_.problem);
+  state_ = State::kDone;
+  problem_.clear();
+}
+
+void CalibrationRun::Stop() {
+  if (over()) return;
+  robot_.Freeze();
+  Fail("stopped");
 }
 
 void CalibrationRun::Step(int64_t now) {
-  if (finished() || !robot_.State().connected || now < still_at_) return;
+  robot_.Poll(now);
+  if (over()) return;
+  const BackEndState robot = robot_.State();
+  if (!robot.connected) {
+    if (away_since_ == 0) away_since_ = now;
+    problem_ = robot.detail;
+    if (now - away_since_ > kLongestAway) Fail("no robot: " + robot.detail);
+    return;
+  }
+  away_since_ = 0;
+  state_ = State::kMoving;
+  if (now < still_at_) return;
+  if (next_ > poses_.size()) return Finish();
   if (next_ > 0 && !looking_) {
     looking_ = true;
     seen_.clear();

@@ -11,10 +11,10 @@
 #include "common/assembly/task_file.h"
 #include "common/bus/messages.h"
 #include "common/bus/service_main.h"
+#include "common/configuration/station_edit.h"
 #include "services/robot_bridge/nao_robot.h"
 #include "services/robot_bridge/robot_options.h"
 #include "tools/calibrate_robot/calibration_run.h"
-#include "tools/calibrate_robot/station_file.h"
 
 namespace {
 
@@ -34,20 +34,37 @@ int PartNamed(const Task& task, const std::string& name) {
   throw ConfigurationError("--part: found '" + name + "', expected one of " + names);
 }
 
-constexpr double kWorst = 0.02;  // m, beyond which a result is not worth keeping
+std::vector<Setting> SeatSettings(const Pose& X_TR) {
+  const Vector3 p = X_TR.translation(), degrees = SeatDegrees(X_TR);
+  char position[64], angles[64];
+  std::snprintf(position, sizeof position, "[%.4f, %.4f, %.4f]", p.x(), p.y(), p.z());
+  std::snprintf(angles, sizeof angles, "[%.2f, %.2f, %.2f]", degrees.x(), degrees.y(), degrees.z());
+  return {{{"robot", "position"}, position}, {{"robot", "roll_pitch_yaw"}, angles}};
+}
 
-void Report(const CalibrationResult& result, size_t samples, const std::filesystem::path& station, bool write) {
-  if (!result.success) throw std::runtime_error("no result: " + result.problem);
+/// One line for each pose that is over since the last call.
+void TellPoses(const CalibrationRun& run, size_t* told) {
+  for (; *told < run.reports().size(); ++*told) {
+    const PoseReport& pose = run.reports()[*told];
+    spdlog::info("pose {} of {}: {} in {} frames{}", *told + 1, run.poses(), pose.used ? "seen" : "not seen well",
+                 pose.frames, pose.used ? "" : "; left out");
+  }
+}
+
+void Report(const CalibrationRun& run, const Station& station, bool write) {
+  if (run.state() == CalibrationRun::State::kFailed) throw std::runtime_error("no result: " + run.problem());
+  const CalibrationResult& result = run.result();
+  const auto settings = SeatSettings(result.X_TR);
   std::printf(
       "# from %zu poses: residual %.1f mm, to be expected elsewhere %.1f mm; the part sits %.0f mm from the hand's "
-      "point\nrobot:\n%s",
-      samples, 1e3 * result.residual, 1e3 * result.left_out_residual, 1e3 * result.p_H.norm(),
-      StationLines(result.X_TR).c_str());
-  if (result.left_out_residual > kWorst)
+      "point\n%s",
+      run.samples().size(), 1e3 * result.residual, 1e3 * result.left_out_residual, 1e3 * result.p_H.norm(),
+      WithSettings("", settings).c_str());
+  if (result.left_out_residual > kWorstCalibration)
     throw std::runtime_error("not written: an error of over 20 mm is to be expected; did the part move in the hand?");
   if (!write) return;
-  const auto kept = WriteRobotPose(station, result.X_TR);
-  std::printf("# written to %s; the old one is %s\n", station.c_str(), kept.c_str());
+  ReplaceFile(station.file, WithSettings(station.text, settings));
+  std::printf("# written to %s; the old one is %s.1\n", station.file.c_str(), station.file.c_str());
 }
 
 }  // namespace
@@ -79,21 +96,14 @@ int main(int argc, char** argv) {
                     << "and press Enter." << std::endl;
           std::cin.get();
         }
-        CalibrationRun run(robot, arm_name == "left" ? Arm::kLeft : Arm::kRight, index,
-                           [](const std::string& line) { spdlog::info("{}", line); });
+        CalibrationRun run(robot, arm_name == "left" ? Arm::kLeft : Arm::kRight, index);
         node.SubscribeNewest<part_poses_t>([&](const part_poses_t& message) { run.See(FromMessage(message)); });
-        const int64_t begun = Now();
+        size_t told = 0;
         node.Run([&] {
-          const int64_t now = Now();
-          robot.Poll(now);
-          run.Step(now);
-          if (!robot.State().connected && now - begun > 60000000) {
-            throw DeviceError("no robot: " + robot.State().detail);
-          }
-          if (run.finished()) node.Stop();
+          run.Step(Now());
+          TellPoses(run, &told);
+          if (run.over()) node.Stop();
         });
-        if (run.finished())
-          Report(CalibrateRobot(run.samples()), run.samples().size(), context.station.file,
-                 !keep && !context.station.file.empty());
+        if (run.over()) Report(run, context.station, !keep && !context.station.file.empty());
       });
 }

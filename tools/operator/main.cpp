@@ -14,8 +14,10 @@
 #include "common/bus/task_follower.h"
 #include "common/configuration/task_choice.h"
 #include "common/imaging/image_codec.h"
+#include "services/robot_bridge/robot_options.h"
 #include "tools/operator/page_json.h"
 #include "tools/operator/page_options.h"
+#include "tools/operator/seat_calibration.h"
 #include "tools/operator/table_setup.h"
 #include "tools/task/task_workshop.h"
 
@@ -114,6 +116,15 @@ std::filesystem::path DefaultStateFolder(const Station& station) {
                               : std::filesystem::absolute(station.file).parent_path() / "state";
 }
 
+/// The usual one while the station file's can't be read.
+Pose SeatOf(const Station& station) {
+  try {
+    return ReadRobotOptions(station.Section("robot")).conductor.X_TR;
+  } catch (const ConfigurationError&) {
+    return DefaultRobotPose();
+  }
+}
+
 /// The page's place on the bus. Everything but the annotations' queue belongs to the node's thread.
 class OperatorService {
  public:
@@ -133,7 +144,8 @@ class OperatorService {
     server_.emplace(options.server,
                     PageServer::Sources{&lesson_, &outbox_, &annotations_, station_.name,
                                         [this, languages = options.languages] {
-                                          return Choices{TaskNames(setup_.station()), languages};
+                                          const Station now = setup_.station();
+                                          return StationFacts{TaskNames(now), languages, SeatOf(now)};
                                         },
                                         [this](const Annotation& a) { Queue(a); }, [this] { node_.Wake(); }, Routes()});
     spdlog::info("the page is at {}", server_->Url());
@@ -162,6 +174,7 @@ class OperatorService {
       const PartPoses poses = FromMessage(m);
       lesson_.OnPoses(poses);
       workshop_.OnPoses(poses);
+      calibration_.OnPoses(poses);
       node_.Answered(m.received_utime);
     });
     node_.Subscribe<assembly_state_t>([this](const auto& m) { lesson_.OnState(FromMessage(m), WallTime()); });
@@ -201,6 +214,8 @@ class OperatorService {
         {"/api/setup", false, [this](const Request&) { return Answer{setup_.Status()}; }},
         {"/api/setup/colour", true, [this](const Request& r) { return Answer{setup_.SuggestColour(r.body)}; }},
         {"/api/setup/seat", true, [this](const Request& r) { return Answer{setup_.SuggestSeat(r.body)}; }},
+        {"/api/setup/calibration", false, [this](const Request&) { return Answer{calibration_.Status()}; }},
+        {"/api/setup/calibrate", true, [this](const Request& r) { return Answer{StartCalibration(r.body)}; }},
         {"/api/setup/save", true, [this](const Request& r) { return Answer{setup_.Save(r.body)}; }},
         {"/api/task/mesh", true, [this](const Request& r) { return Answer{workshop_.AddMesh(r.name, r.body)}; },
          TaskWorkshop::kLargestFile},
@@ -210,6 +225,14 @@ class OperatorService {
            return Answer{BookOf(TaskFileNamed(setup_.station(), r.name)), "text/html; charset=utf-8"};
          }},
     };
+  }
+
+  std::string StartCalibration(const std::string& request) {
+    const AssemblyState state = lesson_.Read(0).state;
+    const bool rests =
+        state.phase == Phase::kIntroduction || state.phase == Phase::kPaused || state.phase == Phase::kComplete;
+    const RobotOptions options = ReadRobotOptions(setup_.station().Section("robot"));
+    return calibration_.Start(request, options.nao, state.session != 0 && !rests);
   }
 
   std::shared_ptr<const Task> TaskOnTable() const {
@@ -227,8 +250,11 @@ class OperatorService {
     for (const auto& command : outbox_.Due(WallTime())) {
       const auto message = ToMessage(command);
       node_.Publish(message);
-      if (command.kind == OperatorKind::kStop && robot_bus_) robot_bus_->Publish(message);
+      if (command.kind != OperatorKind::kStop) continue;
+      calibration_.Stop();
+      if (robot_bus_) robot_bus_->Publish(message);
     }
+    calibration_.Step(SteadyTime());
     std::vector<annotation_t> annotations;
     {
       const std::lock_guard lock(queue_mutex_);
@@ -242,6 +268,7 @@ class OperatorService {
   NewestFrame newest_;
   TableSetup setup_;
   TaskWorkshop workshop_{[this] { return OwnTaskFolder(setup_.station()); }};
+  SeatCalibration calibration_{[](const NaoOptions& options) { return std::make_unique<NaoRobot>(options); }};
   CommandOutbox outbox_;
   AnnotationBook annotations_;
   Node node_;

@@ -8,6 +8,7 @@
 
 #include "common/assembly/task_file.h"
 #include "tools/operator/assembly_plan.h"
+#include "tools/operator/json_text.h"
 
 namespace coach {
 namespace {
@@ -34,18 +35,13 @@ constexpr std::array<std::pair<OperatorKind, const char*>, 14> kKinds{{
     {OperatorKind::kHelp, "help"},
 }};
 
-std::string Dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-/// A number with few digits and never infinite: JSON has no infinity.
-double Short(double value, double scale) { return std::isfinite(value) ? std::round(value * scale) / scale : 0; }
-
 Json PolygonsJson(const std::vector<Polygon>& polygons) {
   Json list = Json::array();
   for (const auto& polygon : polygons) {
     Json flat = Json::array();
     for (const auto& p : polygon) {
-      flat.push_back(Short(p.x(), 10));
-      flat.push_back(Short(p.y(), 10));
+      flat.push_back(Rounded(p.x(), 10));
+      flat.push_back(Rounded(p.y(), 10));
     }
     list.push_back(std::move(flat));
   }
@@ -55,7 +51,7 @@ Json PolygonsJson(const std::vector<Polygon>& polygons) {
 Json MeshJson(const TriangleMesh& mesh) {
   Json vertices = Json::array(), triangles = Json::array();
   for (const auto& p : mesh.vertices) {
-    for (int k = 0; k < 3; ++k) vertices.push_back(Short(p[k] * 1000, 100));
+    for (int k = 0; k < 3; ++k) vertices.push_back(Rounded(p[k] * 1000, 100));
   }
   for (const auto& t : mesh.triangles) {
     for (const int vertex : t) triangles.push_back(vertex);
@@ -81,15 +77,15 @@ Json PlanJson(const Task& task, const std::vector<int>& variant) {
   Json slots = Json::array(), joints = Json::array();
   for (const auto& slot : plan.slots) {
     slots.push_back({{"outlines", PolygonsJson(slot.outlines)},
-                     {"label", {Short(slot.label.x(), 10), Short(slot.label.y(), 10)}},
-                     {"height", Short(slot.height, 10)}});
+                     {"label", {Rounded(slot.label.x(), 10), Rounded(slot.label.y(), 10)}},
+                     {"height", Rounded(slot.height, 10)}});
   }
   for (const auto& joint : plan.joints) {
     joints.push_back(
-        {{"connection", joint.connection}, {"place", {Short(joint.place.x(), 10), Short(joint.place.y(), 10)}}});
+        {{"connection", joint.connection}, {"place", {Rounded(joint.place.x(), 10), Rounded(joint.place.y(), 10)}}});
   }
-  return {{"width", Short(plan.width, 10)},
-          {"height", Short(plan.height, 10)},
+  return {{"width", Rounded(plan.width, 10)},
+          {"height", Rounded(plan.height, 10)},
           {"slots", std::move(slots)},
           {"joints", std::move(joints)}};
 }
@@ -120,7 +116,7 @@ Json TaskJson(const Task& task, const std::vector<TriangleMesh>& meshes) {
 Json EventJson(const GuidanceEvent& e) {
   return {
       {"id", e.id},           {"utime", e.utime},   {"since", e.since},   {"kind", e.kind},
-      {"subject", e.subject}, {"part_a", e.part_a}, {"part_b", e.part_b}, {"probability", Short(e.probability, 1000)},
+      {"subject", e.subject}, {"part_a", e.part_a}, {"part_b", e.part_b}, {"probability", Rounded(e.probability, 1000)},
       {"reason", e.reason}};
 }
 
@@ -131,7 +127,7 @@ Json LessonJson(const Lesson::Snapshot& snapshot, int64_t now) {
     connections.push_back({{"connection", c.connection},
                            {"part_a", c.part_a},
                            {"part_b", c.part_b},
-                           {"probability", Short(c.probability, 1000)},
+                           {"probability", Rounded(c.probability, 1000)},
                            {"state", static_cast<int>(c.state)},
                            {"since", c.since},
                            {"decided", c.decided}});
@@ -154,7 +150,7 @@ Json RobotJson(const Lesson::Snapshot& snapshot, int64_t now) {
           {"speaking", robot.speaking},
           {"back_end", robot.back_end},
           {"language", robot.language},
-          {"battery", Short(robot.battery, 100)},
+          {"battery", Rounded(robot.battery, 100)},
           {"point_clamped", robot.point_clamped},
           {"gaze_clamped", robot.gaze_clamped},
           {"reason", robot.reason}};
@@ -172,7 +168,7 @@ Json ActJson(const SpokenAct& act) {
             {"reason", act.reason},
             {"seen", act.seen}};
   const auto target = [&](const char* name, const std::optional<Vector3>& p) {
-    if (p) json[name] = {Short(p->x(), 1e4), Short(p->y(), 1e4), Short(p->z(), 1e4)};
+    if (p) json[name] = {Rounded(p->x(), 1e4), Rounded(p->y(), 1e4), Rounded(p->z(), 1e4)};
   };
   target("point", act.command.point_target);
   target("look", act.command.look_target);
@@ -186,17 +182,17 @@ Json ServiceJson(const ServiceReport& s, int64_t now) {
           {"alive", now - s.seen < kSilentAfter},
           {"state", static_cast<int>(s.state)},
           {"message", s.message},
-          {"rate", Short(s.rate, 10)},
-          {"latency_p50_ms", Short(s.latency_p50_ms, 10)},
-          {"latency_p99_ms", Short(s.latency_p99_ms, 10)},
-          {"work_p50_ms", Short(s.work_p50_ms, 10)},
-          {"work_p99_ms", Short(s.work_p99_ms, 10)},
+          {"rate", Rounded(s.rate, 10)},
+          {"latency_p50_ms", Rounded(s.latency_p50_ms, 10)},
+          {"latency_p99_ms", Rounded(s.latency_p99_ms, 10)},
+          {"work_p50_ms", Rounded(s.work_p50_ms, 10)},
+          {"work_p99_ms", Rounded(s.work_p99_ms, 10)},
           {"received", s.received},
           {"answered", s.answered},
           {"dropped", s.dropped},
           {"socket_drops", s.socket_drops},
           {"decode_errors", s.decode_errors},
-          {"resident_mb", Short(static_cast<double>(s.resident_bytes) / 1e6, 10)}};
+          {"resident_mb", Rounded(static_cast<double>(s.resident_bytes) / 1e6, 10)}};
 }
 
 Json CommandJson(const CommandOutbox::Entry& entry) {
@@ -222,13 +218,13 @@ Json Mapped(const List& list, const Function& function) {
 
 Json PoseJson(const Pose& X) {
   const Eigen::Quaterniond q(X.rotation());
-  return {Short(X.translation().x(), 1e5),
-          Short(X.translation().y(), 1e5),
-          Short(X.translation().z(), 1e5),
-          Short(q.w(), 1e5),
-          Short(q.x(), 1e5),
-          Short(q.y(), 1e5),
-          Short(q.z(), 1e5)};
+  return {Rounded(X.translation().x(), 1e5),
+          Rounded(X.translation().y(), 1e5),
+          Rounded(X.translation().z(), 1e5),
+          Rounded(q.w(), 1e5),
+          Rounded(q.x(), 1e5),
+          Rounded(q.y(), 1e5),
+          Rounded(q.z(), 1e5)};
 }
 
 }  // namespace
@@ -282,7 +278,7 @@ std::shared_ptr<const TaskView> LoadTaskView(const std::filesystem::path& file, 
 }
 
 std::string StateJson(const Lesson::Snapshot& snapshot, const std::vector<CommandOutbox::Entry>& commands,
-                      const std::vector<Annotation>& annotations, const Choices& choices, const std::string& station,
+                      const std::vector<Annotation>& annotations, const StationFacts& facts, const std::string& station,
                       int64_t now) {
   return Dump({{"station", station},
                {"now", now},
@@ -292,9 +288,10 @@ std::string StateJson(const Lesson::Snapshot& snapshot, const std::vector<Comman
                  {"name", snapshot.task_name},
                  {"choice", snapshot.task_choice},
                  {"problem", snapshot.task_problem}}},
-               {"tasks", choices.tasks},
-               {"languages", choices.languages},
+               {"tasks", facts.tasks},
+               {"languages", facts.languages},
                {"lesson", LessonJson(snapshot, now)},
+               {"seat", PoseJson(facts.X_TR)},
                {"robot", RobotJson(snapshot, now)},
                {"acts", Mapped(snapshot.acts, ActJson)},
                {"services", Mapped(snapshot.services, [&](const auto& s) { return ServiceJson(s, now); })},
@@ -309,14 +306,14 @@ std::string ViewJson(const LiveView& view) {
     const PartEstimate& part = view.poses.parts[k];
     parts.push_back({{"pose", PoseJson(part.X_TP)},
                      {"status", static_cast<int>(part.status)},
-                     {"visible", Short(part.visible_fraction, 100)},
-                     {"confidence", Short(part.confidence, 100)},
+                     {"visible", Rounded(part.visible_fraction, 100)},
+                     {"confidence", Rounded(part.confidence, 100)},
                      {"ambiguous_with", part.ambiguous_with},
                      {"outlines", k < view.outlines.size() ? PolygonsJson(view.outlines[k]) : Json::array()}});
   }
   for (const auto& blob : view.poses.foreign) {
-    foreign.push_back({Short(blob.centre.x(), 1e4), Short(blob.centre.y(), 1e4), Short(blob.centre.z(), 1e4),
-                       Short(blob.radius, 1e4)});
+    foreign.push_back({Rounded(blob.centre.x(), 1e4), Rounded(blob.centre.y(), 1e4), Rounded(blob.centre.z(), 1e4),
+                       Rounded(blob.radius, 1e4)});
   }
   return Dump({{"number", view.number},
                {"utime", view.poses.utime},

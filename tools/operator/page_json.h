@@ -20,15 +20,16 @@ std::shared_ptr<const TaskView> UnusableTask(const std::string& name, const std:
                                              const std::string& problem, int64_t revision);
 std::shared_ptr<const TaskView> MakeTaskView(std::shared_ptr<const Task> task, int64_t revision);
 
-/// What a page may choose from.
-struct Choices {
-  std::vector<std::string> tasks;      ///< names
-  std::vector<std::string> languages;  ///< en, el, ...
+/// What a page needs of the station file.
+struct StationFacts {
+  std::vector<std::string> tasks;      ///< names, to choose from
+  std::vector<std::string> languages;  ///< en, el, ... to choose from
+  Pose X_TR = Pose::Identity();        ///< the robot's seat
 };
 
 /// One change of everything but poses and pictures.
 std::string StateJson(const Lesson::Snapshot& snapshot, const std::vector<CommandOutbox::Entry>& commands,
-                      const std::vector<Annotation>& annotations, const Choices& choices, const std::string& station,
+                      const std::vector<Annotation>& annotations, const StationFacts& facts, const std::string& station,
                       int64_t now);
 
 /// Poses and outlines of one moment.

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "common/configuration/yaml_reader.h"
+#include "tools/operator/json_text.h"
 
 namespace coach {
 namespace {
@@ -68,8 +69,7 @@ RequestFacts FactsOf(const httplib::Request& request) {
 
 void Refuse(httplib::Response& response, int status, const std::string& reason) {
   response.status = status;
-  response.set_content(Json{{"error", reason}}.dump(-1, ' ', false, Json::error_handler_t::replace),
-                       "application/json");
+  response.set_content(Dump({{"error", reason}}), "application/json");
 }
 
 void AppendRecord(std::string& out, const char* data, size_t size) {
@@ -225,7 +225,7 @@ struct PageServer::Impl {
           const std::string text =
               "data: " +
               StateJson(snapshot, sources.outbox->Recent(), sources.annotations->Current(kMaxAnnotations),
-                        sources.choices(), sources.station, Now()) +
+                        sources.facts(), sources.station, Now()) +
               "\n\n";
           return sink.write(text.data(), text.size());
         });

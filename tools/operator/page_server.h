@@ -56,7 +56,7 @@ class PageServer {
     CommandOutbox* outbox = nullptr;
     AnnotationBook* annotations = nullptr;
     std::string station;
-    std::function<Choices()> choices;
+    std::function<StationFacts()> facts;
     // Called from the server's threads:
     std::function<void(const Annotation&)> publish;
     std::function<void()> command_waits;  ///< the outbox has something new

@@ -1,6 +1,7 @@
-// Where the robot sits, from two parts on the table: one by its feet and one straight ahead of it.
+// Where the robot sits: for the pages, and from two parts on the table: one by its feet and one straight ahead of it.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "common/geometry/pose.h"
@@ -16,5 +17,8 @@ struct RobotSeat {
 /// @param ahead m, from the torso's origin forward to the nearer part's middle
 /// @param height m, of the torso's origin above the table
 RobotSeat SeatFromMarks(const Vector3& p_T_near, const Vector3& p_T_far, double ahead, double height);
+
+/// {position (m), roll_pitch_yaw (degrees)} as the station file has them.
+nlohmann::json SeatJson(const Pose& X_TR);
 
 }  // namespace coach

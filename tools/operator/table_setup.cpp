@@ -1,31 +1,27 @@
 #include "tools/operator/table_setup.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <set>
 
 #include "common/assembly/task_file.h"
+#include "common/configuration/station_edit.h"
 #include "common/configuration/task_choice.h"
 #include "services/detector/detector_options.h"
 #include "services/robot_bridge/robot_options.h"
 #include "tools/operator/camera_check.h"
 #include "tools/operator/colour_calibration.h"
+#include "tools/operator/json_text.h"
 #include "tools/operator/page_options.h"
 #include "tools/operator/robot_seat.h"
-#include "tools/operator/station_edit.h"
 
 namespace coach {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-std::string Dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-double Rounded(double value, double scale) { return std::isfinite(value) ? std::round(value * scale) / scale : 0; }
 
 Json RangeJson(const HsvRange& range) { return {{"low", range.low}, {"high", range.high}}; }
 
@@ -94,19 +90,6 @@ bool OnTable(const Frame& frame, const Plane& table, const cv::Point& at) {
   const double z = frame.depth.at<uint16_t>(at) * frame.metres_per_unit;
   const double height = table.Height({(at.x - c.cx) / c.fx * z, (at.y - c.cy) / c.fy * z, z});
   return z == 0 || (height > -0.02 && height < 0.25);
-}
-
-Vector3 DegreesOf(const Pose& X) {
-  const Matrix3 R = X.rotation();
-  const Vector3 angles(std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
-                       std::atan2(R(1, 0), R(0, 0)));
-  return angles * (180 / std::numbers::pi);
-}
-
-Json SeatJson(const Pose& X_TR) {
-  const Vector3 p = X_TR.translation(), degrees = DegreesOf(X_TR);
-  return {{"position", {Rounded(p.x(), 1e4), Rounded(p.y(), 1e4), Rounded(p.z(), 1e4)}},
-          {"roll_pitch_yaw", {Rounded(degrees.x(), 100), Rounded(degrees.y(), 100), Rounded(degrees.z(), 100)}}};
 }
 
 Json RobotJson(const Station& station) {

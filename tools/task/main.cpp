@@ -9,6 +9,7 @@
 #include "common/assembly/task_file.h"
 #include "common/bus/messages.h"
 #include "common/bus/node.h"
+#include "common/bus/process_facts.h"
 #include "common/configuration/station.h"
 #include "tools/task/learned_poses.h"
 #include "tools/task/picture_book.h"
@@ -67,7 +68,7 @@ int New(const Arguments& arguments) {
 }
 
 int Learn(const Arguments& arguments) {
-  constexpr int kPatience = 60;  // s
+  constexpr int64_t kPatience = 60'000'000;  // us
   const Station station = arguments.station_file.empty() ? DefaultStation() : ReadStation(arguments.station_file);
   const Task task = LoadTask(arguments.task.empty() ? station.task : fs::path(arguments.task));
   NodeOptions options;
@@ -83,10 +84,13 @@ int Learn(const Arguments& arguments) {
     poses.Add(FromMessage(m));
     if (m.utime - first < poses.options().window_us) return;
     result = poses.Mean(task);
-    if (result->problems.empty() || m.utime - first > kPatience * 1'000'000LL) node.Stop();
+    if (result->problems.empty()) node.Stop();
   });
   std::fprintf(stderr, "Leave the finished structure on the table and take the hands away ...\n");
-  node.Run([] {});
+  const int64_t begun = SteadyTime();
+  node.Run([&] {
+    if (SteadyTime() - begun > kPatience) node.Stop();
+  });
   if (!result) throw std::runtime_error("no tracker answers");
   if (!result->problems.empty()) throw std::runtime_error(result->problems[0]);
   const DraftOptions draft_options{.touching = poses.options().touching};

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/assembly/task_file.h"
+#include "tools/operator/json_text.h"
 #include "tools/task/picture_book.h"
 
 namespace coach {
@@ -15,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-std::string Dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// A folder of its own that goes with its maker.
 class TrialFolder {
@@ -41,7 +40,7 @@ class TrialFolder {
 Json SizeJson(const TriangleMesh& mesh) {
   const MeshExtent extent = Extent(mesh);
   Json size = Json::array();
-  for (int k = 0; k < 3; ++k) size.push_back(std::round((extent.high - extent.low)[k] * 1e5) / 100);
+  for (int k = 0; k < 3; ++k) size.push_back(Rounded((extent.high - extent.low)[k] * 1000, 100));
   return size;
 }
 

@@ -1,8 +1,11 @@
 // coach-view: a recorded scene with the tracked parts drawn over it, as pictures or in a window.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -28,6 +31,22 @@ struct Options {
 };
 
 constexpr const char* kWindow = "coach-view";
+
+void OpenWindow() { cv::namedWindow(kWindow, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL); }
+
+/// Whether a window can be opened. Tried in a process of its own: without a screen the window's library ends the
+/// process with a page of its own words.
+bool HasScreen() {
+  const pid_t trial = fork();
+  if (trial == 0) {
+    const int silent = open("/dev/null", O_WRONLY);
+    dup2(silent, STDERR_FILENO);
+    OpenWindow();
+    _exit(0);
+  }
+  int status = 1;
+  return trial > 0 && waitpid(trial, &status, 0) == trial && status == 0;
+}
 
 /// Shows a picture for `milliseconds`; the space bar holds it. @return false if the window was closed, or by Esc or q
 bool Show(const cv::Mat& picture, int milliseconds) {
@@ -116,8 +135,9 @@ int Draw(const Options& options) {
   for (const auto& type : task.types) meshes.push_back(Simplified(type.mesh, kMaxTriangles));
   if (options.output.empty() && !options.window)
     throw std::runtime_error("give a folder for the pictures, or --window");
-  if (options.window && !std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
+  if (options.window && !HasScreen())
     throw std::runtime_error("there is no screen for a window; give a folder for the pictures");
+  if (options.window) OpenWindow();
   if (!options.output.empty()) std::filesystem::create_directories(options.output);
   int drawn = 0;
   const int end = options.until < 0 ? scene.size() : std::min(scene.size(), options.until + 1);

@@ -105,7 +105,10 @@ const handlers = {
   hello(event) { body.configure(event.joints); table.configure(event); showTexts(); },
   say,
   said() { if (state.speech) { state.speech.over = true; markWords(1); } },
-  silence() { silence(); },
+  silence() {  // what was broken off is no longer true
+    silence();
+    if (state.speech) showCaption("…");
+  },
   move(event) { body.move(event); },
   freeze() { body.freeze(); },
   eyes(event) { state.eyes = event.colour; },

@@ -45,7 +45,7 @@ function drawArm(body, side, pointing) {
   out += tag("path", { d: capsule(hand, 9 * hand.s, thumb, 8 * hand.s), ...skin });
   if (stretched && pointing) {
     const tip = project(add(arm.hand, arm.direction.map((d) => d * 0.06)));
-    out += tag("path", { d: capsule(hand, 12 * hand.s, tip, 9 * tip.s), ...skin });
+    out += tag("path", { class: "finger", d: capsule(hand, 12 * hand.s, tip, 9 * tip.s), ...skin });
     out += tag("circle", { cx: n(hand.x), cy: n(hand.y), r: n(22 * hand.s), ...skin });
     out += tag("path", { d: capsule(hand, 9 * hand.s, tip, 8 * tip.s), fill: "url(#shell)" });
     out += tag("circle", { cx: n(tip.x), cy: n(tip.y), r: n(6 * tip.s), fill: kCoral });

@@ -1,14 +1,14 @@
-// The live picture of the table from above: parts, hands, the robot at its place and where it points.
+// The live picture of the table from above, as the child sees it: parts, hands, the robot at its place across the table
+// and where it points.
 import { add, apply, rotationOf } from "/body.js";
 
-const kView = { left: -0.46, right: 0.46, near: -0.34, far: 0.62 };  // m, table frame: what must be seen
+const kView = { left: -0.46, right: 0.46, near: -0.34, far: 0.62 };  // m from the table's middle: what must be seen
 const kLight = [0.35, -0.45, 0.82];
 
 export class Table {
   constructor(canvas) {
     this.canvas = canvas;
-    this.task = null;
-    this.robot = { position: [0, 0.5, 0], orientation: [1, 0, 0, 0] };
+    this.configure({ task: null, robot: { position: [0, 0, 0], orientation: [1, 0, 0, 0] } });
     this.parts = [];
     this.hands = [];
     this.texts = null;
@@ -17,6 +17,10 @@ export class Table {
   configure({ task, robot }) {
     this.task = task;
     this.robot = { position: robot.position, rotation: rotationOf(robot.orientation) };
+    // The robot faces the child: its front points down in the picture.
+    const [[x], [y]] = this.robot.rotation, length = Math.hypot(x, y) || 1;
+    this.front = [x / length, y / length];
+    this.far = Math.max(kView.far, 0.12 - this.front[0] * robot.position[0] - this.front[1] * robot.position[1]);
   }
 
   /// @returns whether the number of parts in sight has changed
@@ -37,9 +41,9 @@ export class Table {
     if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
     const context = canvas.getContext("2d");
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    this.scale = Math.min(width / (kView.right - kView.left), height / (kView.far - kView.near));
+    this.scale = Math.min(width / (kView.right - kView.left), height / (this.far - kView.near));
     this.x0 = width / 2;
-    this.y0 = height / 2 + this.scale * (kView.far + kView.near) / 2;
+    this.y0 = height / 2 + this.scale * (this.far + kView.near) / 2;
     this.drawWood(context, width, height);
     this.drawChild(context, height);
     for (const part of this.parts) this.drawShadow(context, part);
@@ -49,7 +53,10 @@ export class Table {
     if (target) this.drawTarget(context, time, body, target);
   }
 
-  at([x, y]) { return [this.x0 + this.scale * x, this.y0 - this.scale * y]; }
+  at([x, y]) {
+    const [fx, fy] = this.front;
+    return [this.x0 + this.scale * (fx * y - fy * x), this.y0 + this.scale * (fx * x + fy * y)];
+  }
 
   drawWood(context, width, height) {
     const wood = context.createLinearGradient(0, 0, 0, height);
@@ -148,7 +155,7 @@ export class Table {
     context.fill();
   }
 
-  toTable(p_R) { return add(apply(this.robot.rotation ?? rotationOf([1, 0, 0, 0]), p_R), this.robot.position); }
+  toTable(p_R) { return add(apply(this.robot.rotation, p_R), this.robot.position); }
 
   limb(context, from, to, width, colour) {
     context.lineCap = "round";

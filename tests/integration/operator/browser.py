@@ -70,13 +70,20 @@ class Browser:
         """The value that a script returns; arguments[0], arguments[1] ... in the script."""
         return self._call("POST", self._session + "/execute/sync", {"script": script, "args": list(arguments)})
 
+    def _on_element(self, selector, command, body):
+        for attempt in range(5):
+            element = self._call("POST", self._session + "/element", {"using": "css selector", "value": selector})
+            try:
+                return self._call("POST", self._session + f"/element/{next(iter(element.values()))}/{command}", body)
+            except RuntimeError as error:  # drawn anew between finding it and using it
+                if "stale" not in str(error) or attempt == 4:
+                    raise
+
     def click(self, selector):
-        element = self._call("POST", self._session + "/element", {"using": "css selector", "value": selector})
-        self._call("POST", self._session + f"/element/{next(iter(element.values()))}/click", {})
+        self._on_element(selector, "click", {})
 
     def type(self, selector, text):
-        element = self._call("POST", self._session + "/element", {"using": "css selector", "value": selector})
-        self._call("POST", self._session + f"/element/{next(iter(element.values()))}/value", {"text": text})
+        self._on_element(selector, "value", {"text": text})
 
     def press(self, key):
         self._call("POST", self._session + "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": [
@@ -96,7 +103,10 @@ class Browser:
         raise TimeoutError(f"after {seconds} s still not true: {script} {arguments}")
 
     def size(self, width, height):
-        self._call("POST", self._session + "/window/rect", {"width": width, "height": height})
+        """Returns when the page has been laid out for it (no window is narrower than 500 px)."""
+        given = self._call("POST", self._session + "/window/rect", {"width": width, "height": height})
+        self.wait_for("return outerWidth === arguments[0] && outerHeight === arguments[1]", 10, given["width"], given["height"])
+        self._call("POST", self._session + "/execute/async", {"script": "requestAnimationFrame(() => requestAnimationFrame(arguments[0]))", "args": []})
 
     def screenshot(self, file):
         with open(file, "wb") as out:

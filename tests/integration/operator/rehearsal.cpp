@@ -318,6 +318,9 @@ class Rehearsal {
   Phase phase_ = Phase::kIntroduction;
 };
 
+/// Below the camera, facing the child.
+Pose RobotSeat() { return MakePose(ExpRotation(Vector3(0, 0, M_PI / 2)), Vector3(0, -0.5, 0.08)); }
+
 int Main(int argc, char** argv) {
   if (argc < 2) {
     std::fprintf(stderr, "usage: page-rehearsal TASK.yaml [PORT [SECONDS_PER_STEP [PAGE_FOLDER]]]\n");
@@ -333,7 +336,7 @@ int Main(int argc, char** argv) {
   options.folder = argc > 4 ? argv[4] : "";
   const PageServer server(options, {&lesson, &outbox, &annotations, "REHEARSAL",
                                     [&] {
-                                      return Choices{{task->file.stem()}, {"en", "el"}};
+                                      return StationFacts{{task->file.stem()}, {"en", "el"}, RobotSeat()};
                                     },
                                     [](const Annotation&) {}, [] {}});
   std::printf("%s\n", server.Url().c_str());

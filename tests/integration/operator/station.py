@@ -16,6 +16,18 @@ def free_port():
         return free.getsockname()[1]
 
 
+def wait_for_page(url, seconds=30):
+    """@raises OSError if it does not answer."""
+    deadline = time.monotonic() + seconds
+    while True:
+        try:
+            return urllib.request.urlopen(url, timeout=2).close()
+        except OSError:
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(0.1)
+
+
 class Station:
     """Runs inside tools/in-netns. The camera is a simulated child with a task of its own. Use as a context manager."""
 
@@ -35,16 +47,12 @@ class Station:
     def __enter__(self):
         for name in ["simulated-child", *SERVICES]:
             self.start(name)
-        deadline = time.monotonic() + 30
-        while True:
-            try:
-                urllib.request.urlopen(self.url, timeout=2).close()
-                return self
-            except OSError:
-                if time.monotonic() > deadline:
-                    self.__exit__()
-                    raise
-                time.sleep(0.1)
+        try:
+            wait_for_page(self.url)
+        except OSError:
+            self.__exit__()
+            raise
+        return self
 
     def __exit__(self, *_):
         for child in self.children.values():

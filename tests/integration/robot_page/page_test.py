@@ -19,6 +19,7 @@ SERVER, TASK, WORK = sys.argv[1:4]
 SCREENSHOTS = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 else None
 PARTS = [[-0.2, 0.05, 0.3], [0.22, 0.1, 1.2], [0.05, -0.12, 0.0], [-0.1, 0.22, 2.0]]
 ENGLISH = "Great! Now take the green brick and put it next to the long blue one."
+CORRECTION = "Wait, that one goes to the other end."
 GREEK = "Μπράβο! Τώρα πάρε το μπλε τουβλάκι και βάλε το εδώ."
 
 
@@ -81,35 +82,29 @@ class PageTest(unittest.TestCase):
     def caption(self):
         return self.browser.run("return document.querySelector('#caption').textContent")
 
-    def drawing(self):
-        return self.browser.run("return document.querySelector('#robot').innerHTML")
-
     def pixel(self, x, y):
-        """Colour of the table's picture at a place of the table, m."""
+        """Colour of the table's picture at a place of the table, m. The child sits at +y, so there is the picture's bottom."""
         return self.browser.run("""
             const c = document.querySelector('#table'), r = c.width / c.clientWidth;
             const scale = Math.min(c.clientWidth / 0.92, c.clientHeight / 0.96);
-            const px = c.clientWidth / 2 + scale * arguments[0], py = c.clientHeight / 2 + scale * (0.14 - arguments[1]);
+            const px = c.clientWidth / 2 - scale * arguments[0], py = c.clientHeight / 2 + scale * (0.14 + arguments[1]);
             return [...c.getContext('2d').getImageData(Math.round(px * r), Math.round(py * r), 1, 1).data]""", x, y)
 
-    def wait_for_pixel(self, holds, what, seconds=10):
+    def wait_for_pixel(self, holds, what, place=(-0.2, 0.05), seconds=10):
         """The table is drawn with the browser's next picture, a moment after its description."""
         until = time.monotonic() + seconds
-        while not holds(*self.pixel(-0.2, 0.05)[:3]):
-            self.assertLess(time.monotonic(), until, f"expected {what}, found the colour {self.pixel(-0.2, 0.05)}")
+        while not holds(*self.pixel(*place)[:3]):
+            self.assertLess(time.monotonic(), until, f"expected {what}, found the colour {self.pixel(*place)}")
             time.sleep(0.05)
 
     def test_says_points_and_looks_in_both_languages(self):
-        still = self.drawing()
         self.robot.order(act={"id": 1, "language": "en", "text": ENGLISH, "point": [0.22, 0.1, 0.02],
                               "look": [0.22, 0.1, 0.02], "eyes": "green"})
         self.browser.wait_for("return document.querySelector('#caption').textContent === arguments[0]", 10, ENGLISH)
-        self.browser.wait_for("return document.querySelectorAll('#caption .said').length >= 5")
-        self.assertLess(self.browser.run("return document.querySelectorAll('#caption .said').length"), len(ENGLISH.split()))
+        self.browser.wait_for("const said = document.querySelectorAll('#caption .said').length; return said >= 5 && said < arguments[0]", 10, len(ENGLISH.split()))
+        self.browser.wait_for("return document.querySelector('#robot').innerHTML.includes('#32af50')")  # the eyes
+        self.browser.wait_for("return document.querySelector('#robot .finger')")
         self.shoot("point_english")
-        moving = self.drawing()
-        self.assertIn("#32af50", moving)  # the eyes
-        self.assertNotEqual(still, moving)
         self.assertEqual(self.robot.wait_for("1 done"), "1 done")
         self.robot.order(act={"id": 2, "language": "el", "text": GREEK, "point": [-0.2, 0.05, 0.02],
                               "look": [-0.2, 0.05, 0.02], "eyes": "blue"})
@@ -122,7 +117,6 @@ class PageTest(unittest.TestCase):
         self.robot.wait_for("3 done")
         self.browser.wait_for("return document.querySelector('#robot').innerHTML.includes('>z</text>')")
         self.browser.size(800, 1200)
-        time.sleep(0.5)
         self.shoot("resting_portrait")
         self.assertEqual(self.browser.log(), [])
 
@@ -130,6 +124,12 @@ class PageTest(unittest.TestCase):
         self.wait_for_pixel(lambda red, green, blue: blue > red + 60, "the blue part")
         self.robot.order(scene={"parts": [[0.3, -0.2, 0]] + PARTS[1:]})
         self.wait_for_pixel(lambda red, green, blue: red > blue, "wood, the part has gone")
+
+    def test_robot_sits_opposite_the_child(self):
+        """At its seat of the station file, which is on the camera's side: above, as the child sees it."""
+        white = lambda red, green, blue: min(red, green, blue) > 200
+        self.wait_for_pixel(white, "the robot", place=(0, -0.5))
+        self.assertFalse(white(*self.pixel(0, 0.3)[:3]), "the child's side")
 
     def test_sound_needs_a_touch_and_the_page_tells(self):
         self.robot.order(act={"id": 1, "language": "en", "text": ENGLISH})
@@ -144,10 +144,21 @@ class PageTest(unittest.TestCase):
         self.browser.wait_for("return document.querySelectorAll('#caption .said').length >= 3")
         self.robot.order(stop=True)
         self.assertIn("stopped", self.robot.wait_for("1 interrupted", 2))
-        time.sleep(0.2)
-        said = self.browser.run("return document.querySelectorAll('#caption .said').length")
+        self.browser.wait_for("return document.querySelector('#caption').textContent === '…'")
         time.sleep(1)
-        self.assertEqual(said, self.browser.run("return document.querySelectorAll('#caption .said').length"))
+        self.assertEqual(self.caption(), "…")
+
+    def test_bubble_forgets_an_interrupted_sentence_before_the_correction_comes(self):
+        self.robot.order(act={"id": 1, "language": "en", "text": ENGLISH * 3})
+        self.browser.wait_for("return document.querySelectorAll('#caption .said').length >= 3")
+        self.browser.run("""window.bubble = []; new MutationObserver(() => bubble.push(document.querySelector('#caption').textContent))
+            .observe(document.querySelector('#caption'), {childList: true})""")
+        self.robot.order(act={"id": 2, "language": "en", "text": CORRECTION, "look": [-0.3, 0.2, 0.02], "replaces": 1, "look_first": True})
+        self.robot.wait_for("1 interrupted", 5)
+        self.browser.wait_for("return document.querySelector('#caption').textContent === arguments[0]", 10, CORRECTION)
+        self.assertEqual(self.browser.run("return bubble"), ["…", CORRECTION])
+        self.robot.wait_for("2 done")
+        self.assertEqual(self.caption(), CORRECTION)
 
     def test_help_button_and_fifty_clicks(self):
         self.browser.click("#help")

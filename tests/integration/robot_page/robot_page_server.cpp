@@ -1,7 +1,8 @@
 // Runs the virtual robot without a bus, for tests of its page: one JSON order a line on standard input, the page's URL
 // and then every change of an act's state and every call for help on standard output.
 //
-//   {"act": {"id": 1, "language": "en", "text": "...", "point": [x, y, z], "look": [x, y, z], "eyes": "blue"}}
+//   {"act": {"id": 1, "language": "en", "text": "...", "point": [x, y, z], "look": [x, y, z], "eyes": "blue",
+//            "replaces": 0, "look_first": false}}
 //   {"scene": {"parts": [[x, y, yaw], ...], "hands": [[x, y, z, radius], ...]}}
 //   {"act": {"id": 2, "rest": true}}  {"stop": true}
 #include <poll.h>
@@ -40,6 +41,8 @@ RobotCommand CommandOf(const json& act) {
   command.eye_colour = act.value("eyes", "");
   command.valid_for_us = 20000000;
   command.priority = Priority::kExplanatory;
+  command.replaces_id = act.value("replaces", 0);
+  if (act.value("look_first", false)) command.order = ActOrder::kLookThenSay;
   if (act.contains("point")) command.point_target = VectorOf(act["point"]);
   if (act.contains("look")) command.look_target = VectorOf(act["look"]);
   if (act.value("rest", false)) command.kind = ActKind::kRest;

@@ -138,7 +138,8 @@ function onView(view, jpeg) {
   page.pictures = Boolean(jpeg) || view.width === 0;
   page.pictured ||= Boolean(jpeg);
   showView(view, jpeg, page.task);
-  showTable(view, page.task, page.state && currentAct(page.state)?.point);
+  const {state} = page;
+  showTable(view, page.task, state && {seat: state.seat, target: currentAct(state)?.point, connections: state.lesson.connections});
 }
 
 function showPage() {

@@ -6,7 +6,7 @@ import {t} from './words.js';
 
 const TRACKED = 0, OCCLUDED = 1, LOST = 3;
 const canvas = byId('camera-canvas'), context = canvas.getContext('2d', {alpha: false});
-let decoding = false, last = null;
+let decoding = false, last = null;  // {picture, view, task} that is shown
 let tint = null, onPlace = null;
 const cross = {x: 320, y: 240, shown: false};  // for those who don't click: arrow keys and Enter
 const times = [];
@@ -18,10 +18,10 @@ export async function showView(view, jpeg, task) {
     decoding = true;
     try {
       const picture = await createImageBitmap(new Blob([jpeg], {type: 'image/jpeg'}));
-      last?.close?.();
-      last = picture;
+      last?.picture.close();
+      last = {picture, view, task};
       countPicture();
-      draw(picture, view, task);
+      draw(last);
       byId('camera-note').hidden = true;
     } catch { /* a broken picture is followed by the next */ }
     decoding = false;
@@ -42,7 +42,7 @@ export function pictureRate() {
   return times.length / 2;
 }
 
-function draw(picture, view, task) {
+function draw({picture, view, task}) {
   if (canvas.width !== picture.width || canvas.height !== picture.height) {
     canvas.width = picture.width;
     canvas.height = picture.height;
@@ -69,7 +69,11 @@ export function showPictureIn(container) {
 }
 
 /** Greys out what is not in an HSV range {low, high} (OpenCV's 8 bits); null shows everything. */
-export function tintPicture(range) { tint = range; }
+export function tintPicture(range) {
+  if (JSON.stringify(range) === JSON.stringify(tint)) return;
+  tint = range;
+  if (last) draw(last);
+}
 
 /** Calls handler(x, y) with the pixel that is clicked; null: the picture is not for clicking. */
 export function picturePlace(handler) {

@@ -1,6 +1,7 @@
 // Set-up, fifth step: which robot, and where it sits.
 import {element, readable} from './dom.js';
 import {post} from './connection.js';
+import {calibrating, calibrationKey} from './setup_calibration.js';
 import {t} from './words.js';
 
 const TRACKED = 0;
@@ -30,7 +31,7 @@ function measuring(status, page, tools) {
   const parts = (page.view?.parts ?? []).map((part, index) => index).filter((index) => page.view.parts[index].status === TRACKED && page.task?.parts?.[index]);
   const choice = (key, standard) => element('label', {class: 'field'}, element('span', {}, t(`setup.${key}`)), element('select', {'data-focus': key, change: (event) => { mark[key] = Number(event.target.value); }},
     parts.map((index) => element('option', {value: index, selected: index === (mark[key] ?? standard)}, readable(page.task.parts[index].name)))));
-  return element('details', {open: !status.robot.seated && parts.length > 1}, element('summary', {}, t('setup.measure_title')), element('p', {class: 'lead'}, t('setup.measure_lead')),
+  return element('details', {open: !status.robot.seated && shown(status).back_end !== 'nao'}, element('summary', {}, t('setup.measure_title')), element('p', {class: 'lead'}, t('setup.measure_lead')),
     element('div', {class: 'fields'}, choice('near', parts[0]), choice('far', parts[1]),
       number(t('setup.ahead'), mark.ahead, 'setup-ahead', (value) => { mark.ahead = value; }), number(t('setup.height'), mark.height, 'setup-height', (value) => { mark.height = value; })),
     element('button', {type: 'button', id: 'setup-measure', 'data-focus': 'measure', disabled: parts.length < 2, click: () => measure(status, tools, parts)}, t('setup.measure')));
@@ -39,7 +40,7 @@ function measuring(status, page, tools) {
 export const robotStep = {
   name: 'robot',
   done: ({robot}) => robot.seated,
-  key: (status, page) => [shown(status), page.task?.revision, page.view?.parts?.map((part) => part.status === TRACKED)],
+  key: (status, page) => [shown(status), calibrationKey(), page.task?.revision, page.view?.parts?.map((part) => part.status === TRACKED)],
   show(status, page, tools) {
     const robot = shown(status);
     return [
@@ -47,7 +48,7 @@ export const robotStep = {
         element('label', {class: 'field'}, element('span', {}, t('setup.back_end')), element('select', {'data-focus': 'back-end', change: (event) => edit(status, (one) => { one.back_end = event.target.value; }, tools.redraw)},
           ['virtual', 'nao', 'log'].map((name) => element('option', {value: name, selected: name === robot.back_end}, t(`setup.back_ends.${name}`))))),
         robot.back_end === 'nao' && element('label', {class: 'field'}, element('span', {}, t('setup.url')), element('input', {type: 'text', value: robot.url, 'data-focus': 'url', change: (event) => edit(status, (one) => { one.url = event.target.value; }, tools.redraw)}))),
-      robot.back_end === 'nao' && element('p', {class: 'lead'}, t('setup.nao_hint')),
+      robot.back_end === 'nao' && calibrating(robot, page, tools, ({position, roll_pitch_yaw}) => edit(status, (one) => Object.assign(one, {position, roll_pitch_yaw, seated: true}), tools.redraw)),
       measuring(status, page, tools),
       element('h3', {}, t('setup.seat_title')), element('p', {class: 'lead'}, t(robot.seated ? 'setup.seat_known' : 'setup.seat_open')),
       element('div', {class: 'fields'}, FIELDS.map(([name, list, index, scale]) => number(t(`setup.seat_${name}`), Math.round(robot[list][index] * scale * 10) / 10, `seat-${name}`,

@@ -1,14 +1,16 @@
-// Three-dimensional view of the table (WebGL, no library): parts, hands, where the robot points.
+// Three-dimensional view of the table (WebGL, no library): parts, what is joined, hands, the robot and where it points.
 import {byId} from './dom.js';
 import {colourOf, components} from './colours.js';
 
 const HAND = 0.07;  // m
-const TRACKED = 0, OCCLUDED = 1, LOST = 3, ABSENT = 4;
+const CHEST = 0.06, HEAD = 0.075, NECK = 0.2;  // m, the robot's
+const TRACKED = 0, OCCLUDED = 1, LOST = 3, ABSENT = 4, MADE = 1;
+const GREEN = [0.11, 0.48, 0.27, 1], BLUE = [0.11, 0.37, 0.72, 1], WHITE = [0.95, 0.97, 0.98, 1], DARK = [0.14, 0.2, 0.27, 1];
 const canvas = byId('table-canvas');
 const gl = canvas.getContext('webgl', {antialias: true, alpha: false});
-const eye = {turn: -0.5, tilt: 0.75, distance: 0.7};
-const scene = {task: null, meshes: [], view: null, target: null};
-let program, places, sphere, disc, ground, pending = false, middle = [0, 0, 0];
+const eye = {turn: -0.5, tilt: 0.75, distance: 0.8};
+const scene = {task: null, meshes: [], view: null, lesson: null};
+let program, places, sphere, disc, stick, ground, pending = false, middle = [0, 0, 0];
 
 const VERTEX = `attribute vec3 position, normal; uniform mat4 model, camera; varying vec3 n;
 void main() { n = mat3(model) * normal; gl_Position = camera * model * vec4(position, 1.0); }`;
@@ -33,6 +35,7 @@ export function setUpTable() {
   for (const name of ['position', 'normal']) places[name] = gl.getAttribLocation(program, name);
   sphere = upload(ball(10, 16));
   disc = upload(ring(0.75, 1, 40));
+  stick = upload(tube(16));
   ground = upload(grid(0.6, 0.1));
   let held = null;
   canvas.addEventListener('pointerdown', (event) => { held = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
@@ -62,7 +65,8 @@ function zoom(factor) {
   draw();
 }
 
-export function showTable(view, task, target) {
+/** @param lesson {seat: pose of the robot's chest, target: where it points, connections}; null if not known yet */
+export function showTable(view, task, lesson) {
   if (!gl) return;
   if (task && task !== scene.task) {
     for (const mesh of scene.meshes) gl.deleteBuffer(mesh.buffer);
@@ -70,7 +74,7 @@ export function showTable(view, task, target) {
     scene.task = task;
   }
   scene.view = view;
-  scene.target = target;
+  scene.lesson = lesson;
   draw();
 }
 
@@ -102,11 +106,37 @@ function render() {
       paint(scene.meshes[type], poseMatrix(part.pose), [...components(colourOf(scene.task.types[type])), alpha], 1, gl.TRIANGLES);
     });
   }
+  paintLesson(parts);
   // Hands are a hint behind which the parts stay visible; an arm or a body is no larger than a hand here.
   gl.depthMask(false);
   for (const [x, y, z, radius] of scene.view?.foreign ?? []) paint(sphere, translation(x, y, z, Math.min(radius, HAND)), [0.85, 0.62, 0.5, 0.25], 1, gl.TRIANGLES);
   gl.depthMask(true);
-  if (scene.target) paint(disc, translation(scene.target[0], scene.target[1], scene.target[2] + 0.03, 0.035), [0.11, 0.37, 0.72, 1], 0, gl.TRIANGLES);
+}
+
+/** What is joined, the robot, and where it points. */
+function paintLesson(parts) {
+  if (!scene.lesson) return;
+  const {seat, target, connections} = scene.lesson;
+  for (const {state, part_a, part_b} of connections) {
+    if (state === MADE && parts[part_a] && parts[part_b]) paintStick(above(parts[part_a].pose, 0.03), above(parts[part_b].pose, 0.03), 0.004, GREEN);
+  }
+  const chest = seat.slice(0, 3), head = above(seat, NECK), front = poseMatrix(seat).slice(0, 3);
+  paint(sphere, translation(...chest, CHEST), WHITE, 1, gl.TRIANGLES);
+  paintStick(chest, head, 0.04, WHITE);
+  paint(sphere, translation(...head, HEAD), WHITE, 1, gl.TRIANGLES);
+  for (const side of [-1, 1]) {
+    const place = [head[0] + 0.062 * front[0] - side * 0.03 * front[1], head[1] + 0.062 * front[1] + side * 0.03 * front[0], head[2] + 0.01];
+    paint(sphere, translation(...place, 0.018), DARK, 1, gl.TRIANGLES);
+  }
+  if (!target) return;
+  paintStick(above(seat, 0.08), target, 0.003, BLUE);
+  paint(disc, translation(target[0], target[1], target[2] + 0.03, 0.035), BLUE, 0, gl.TRIANGLES);
+}
+
+function paintStick(from, to, radius, colour) {
+  const axis = minus(to, from), length = Math.hypot(...axis) || 1, z = axis.map((value) => value / length);
+  const x = normalised(cross(Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], z)), y = cross(z, x);
+  paint(stick, new Float32Array([...x.map((v) => v * radius), 0, ...y.map((v) => v * radius), 0, ...axis, 0, ...from, 1]), colour, 1, gl.TRIANGLES);
 }
 
 /** The view stays on the middle of the parts, slowly. */
@@ -169,6 +199,16 @@ function ring(inner, outer, sectors) {
   return numbers;
 }
 
+/** Without ends, of radius and length 1 along z. */
+function tube(sectors) {
+  const at = (j, z) => { const q = 2 * Math.PI * j / sectors; return [Math.cos(q), Math.sin(q), z, Math.cos(q), Math.sin(q), 0]; };
+  const numbers = [];
+  for (let j = 0; j < sectors; j++) {
+    for (const p of [at(j, 0), at(j + 1, 0), at(j + 1, 1), at(j, 0), at(j + 1, 1), at(j, 1)]) numbers.push(...p);
+  }
+  return numbers;
+}
+
 function grid(half, step) {
   const numbers = [];
   for (let k = -half; k <= half + 1e-9; k += step) {
@@ -179,6 +219,7 @@ function grid(half, step) {
 
 // Matrices are column major, as WebGL takes them.
 const translation = (x, y, z, scale = 1) => new Float32Array([scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0, x, y, z, 1]);
+const above = ([x, y, z], height) => [x, y, z + height];
 const minus = (a, b) => a.map((value, k) => value - b[k]);
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

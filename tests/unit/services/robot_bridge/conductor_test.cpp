@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "services/robot_bridge/robot_options.h"
 #include "services/robot_bridge/speech_text.h"
@@ -58,7 +59,7 @@ class FakeRobot : public BackEnd {
 class ConductorTest : public testing::Test {
  protected:
   ConductorTest() {
-    options.X_TR = DefaultRobotPose();
+    options.X_TR = MakePose(ExpRotation(Vector3(0, 0, -std::numbers::pi / 2)), Vector3(0, 0.5, 0.08));
     conductor.emplace(options, robot);
     Run(0.1);
   }

@@ -3,14 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <random>
-
-#include "services/robot_bridge/robot_options.h"
 
 namespace coach {
 namespace {
 
-Surroundings Seat() { return {DefaultRobotPose(), {}}; }
+/// Half a metre from the table's middle, the front to -y.
+Surroundings Seat() {
+  return {MakePose(Eigen::AngleAxisd(-std::numbers::pi / 2, Vector3::UnitZ()).toRotationMatrix(), {0, 0.5, 0.08}), {}};
+}
 
 double LowestPoint(Arm arm, const JointPath& path, const Pose& X_TR) {
   double lowest = 1e9;
@@ -88,9 +90,9 @@ TEST(GestureTest, HandNearTheArmBlocksTheWayAndOneFarOffDoesNot) {
   EXPECT_TRUE(PlanPointing(target, RestAngles(), Arm::kRight, crowded, options).possible);
 }
 
-TEST(GestureTest, ArmStaysOnItsSideOfTheChildsLine) {
+TEST(GestureTest, ArmKeepsItsDistanceFromTheChild) {
   GestureOptions options;
-  options.child_line = 0.35;
+  options.child_distance = 0.15;
   const PointingPlan plan = PlanPointing({0, 0, 0}, RestAngles(), Arm::kRight, Seat(), options);
   EXPECT_FALSE(plan.possible);
   EXPECT_EQ(plan.obstacle, Obstacle::kChild);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ class Lesson {
   explicit Lesson(const FakeQiServer& server) : Lesson(OptionsFor(server)) {}
   explicit Lesson(const NaoOptions& nao) : robot(nao) {
     ConductorOptions options;
-    options.X_TR = DefaultRobotPose();
+    options.X_TR = MakePose(ExpRotation(Vector3(0, 0, -std::numbers::pi / 2)), Vector3(0, 0.5, 0.08));
     conductor.emplace(options, robot);
   }
   void Step() {

@@ -83,14 +83,5 @@ TEST(RobotCalibrationTest, PosesAreAllowedAndHighAboveTheTable) {
   }
 }
 
-TEST(RobotCalibrationTest, StationLinesAreReadBack) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    const Pose X_TR = Seat(seed);
-    const auto read = ReadRobotOptions(YamlNode::Parse("robot:\n" + StationLines(X_TR), "station").At("robot"));
-    EXPECT_LT((read.conductor.X_TR.translation() - X_TR.translation()).norm(), 1e-4);
-    EXPECT_LT(RotationAngle(read.conductor.X_TR.linear().transpose() * X_TR.linear()), 2e-4);
-  }
-}
-
 }  // namespace
 }  // namespace coach

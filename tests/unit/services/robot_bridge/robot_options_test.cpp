@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+#include <sstream>
+
 namespace coach {
 namespace {
 
@@ -24,14 +27,15 @@ std::string ErrorOf(const std::string& yaml) {
 TEST(RobotOptionsTest, MissingPartIsAllDefaults) {
   const RobotOptions options = Read("robot: {}\n");
   EXPECT_EQ(options.back_end, "virtual");
-  // The robot faces the child: its front is -y of the table.
-  EXPECT_LT((options.conductor.X_TR.linear().col(0) - Vector3(0, -1, 0)).norm(), 1e-12);
+  // As the camera the robot faces the child: its front is +y of the table.
+  EXPECT_LT((options.conductor.X_TR.linear().col(0) - Vector3(0, 1, 0)).norm(), 1e-12);
+  EXPECT_LT(options.conductor.X_TR.translation().y(), -0.4);
 }
 
 TEST(RobotOptionsTest, EveryKey) {
   const RobotOptions options = Read(
       "robot:\n  back_end: nao\n  volume: 0.4\n  position: [0.1, 0.4, 0.2]\n  roll_pitch_yaw: [0, 0, 180]\n"
-      "  speed: 0.2\n  child_line: -0.3\n  hand_clearance: 0.2\n  heartbeat_timeout: 20\n"
+      "  speed: 0.2\n  child_distance: 0.6\n  hand_clearance: 0.2\n  heartbeat_timeout: 20\n"
       "  virtual: {host: 0.0.0.0, port: 9000, token: abcdefghijkl, max_pages: 3}\n"
       "  nao: {url: 'tcps://10.0.0.5:9503', user: nao, token: secret, call_timeout: 3, largest_volume: 0.5}\n");
   EXPECT_EQ(options.back_end, "nao");
@@ -39,6 +43,17 @@ TEST(RobotOptionsTest, EveryKey) {
   EXPECT_EQ(options.virtual_robot.port, 9000);
   EXPECT_EQ(options.nao.url, "tcps://10.0.0.5:9503");
   EXPECT_EQ(options.conductor.heartbeat_timeout_s, 20);
+}
+
+TEST(RobotOptionsTest, SeatDegreesAreReadBack) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-170, 170), steep(-85, 85);
+  for (int k = 0; k < 100; ++k) {
+    const Vector3 degrees(any(random), steep(random), any(random));
+    std::ostringstream yaml;
+    yaml << "robot:\n  roll_pitch_yaw: [" << degrees.x() << ", " << degrees.y() << ", " << degrees.z() << "]\n";
+    EXPECT_LT((SeatDegrees(Read(yaml.str()).conductor.X_TR) - degrees).norm(), 1e-3);
+  }
 }
 
 TEST(RobotOptionsTest, MistakesNameThePlaceAndWhatWasExpected) {

@@ -100,7 +100,7 @@ TEST_F(VirtualRobotTest, ServesThePageAndGreetsWithJointsAndSeat) {
   const json hello = listener.Find("hello");
   EXPECT_EQ(hello["joints"].size(), 12u);
   EXPECT_EQ(hello["joints"][0]["name"], "HeadYaw");
-  EXPECT_EQ(hello["robot"]["position"], json::parse("[0, 0.5, 0.08]"));
+  EXPECT_EQ(hello["robot"]["position"], json::parse("[0, -0.5, 0.08]"));
 }
 
 TEST_F(VirtualRobotTest, SpeechIsRenderedOfferedAndEndsByItself) {

@@ -31,7 +31,7 @@ class PageServerTest : public testing::Test {
     server_ = std::make_unique<PageServer>(
         options, PageServer::Sources{&lesson_, &outbox_, &annotations_, "T1",
                                      [] {
-                                       return Choices{{"rectangle"}, {"en", "el"}};
+                                       return StationFacts{{"rectangle"}, {"en", "el"}};
                                      },
                                      [this](const Annotation& a) { published_.push_back(a); }, [this] { ++woken_; }});
     client_ = std::make_unique<httplib::Client>("localhost", server_->port());

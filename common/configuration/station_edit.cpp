@@ -1,4 +1,4 @@
-#include "tools/operator/station_edit.h"
+#include "common/configuration/station_edit.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
