@@ -59,12 +59,12 @@ LearnedPoses::Result LearnedPoses::Mean(const Task& task) const {
     }
     const std::string& name = task.parts[k].name;
     if (static_cast<int>(seen.size()) < options_.least_frames) {
-      result.problems.push_back(name + " is not seen well");
+      result.problems.push_back({"unseen", name});
       continue;
     }
     const Vector3 median = MedianPosition(seen);
     if ((WithoutOutliers(seen).back().translation() - median).norm() > options_.still) {
-      result.problems.push_back(name + " does not lie still");
+      result.problems.push_back({"moved", name});
       continue;
     }
     result.X_TP.push_back(MeanPose(seen));

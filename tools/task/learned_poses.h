@@ -25,8 +25,8 @@ class LearnedPoses {
   void Add(const PartPoses& poses);
 
   struct Result {
-    std::vector<std::string> problems;  ///< one a part that was not seen or not still; empty: learned
-    std::vector<Pose> X_TP;             ///< mean poses, index = index in Task::parts
+    std::vector<Remark> problems;  ///< one a part that was not seen or not still; empty: learned
+    std::vector<Pose> X_TP;        ///< mean poses, index = index in Task::parts
   };
   Result Mean(const Task& task) const;
   const LearningOptions& options() const { return options_; }

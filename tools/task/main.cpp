@@ -45,7 +45,7 @@ void Report(const TaskDraft& draft, const DraftOptions& options, const fs::path&
                 type.mesh.triangles.size(), type.symmetries.trivial() ? "" : ", symmetric");
   std::printf("%zu connections, %zu of them close by themselves\n", contacts.joining.size() + contacts.closing.size(),
               contacts.closing.size());
-  for (const auto& doubt : Doubts(draft, options)) std::printf("look at this: %s\n", doubt.c_str());
+  for (const auto& doubt : Doubts(draft, options)) std::printf("look at this: %s\n", Sentence(doubt).c_str());
   std::printf("%s\n", file.c_str());
 }
 
@@ -92,7 +92,7 @@ int Learn(const Arguments& arguments) {
     if (SteadyTime() - begun > kPatience) node.Stop();
   });
   if (!result) throw std::runtime_error("no tracker answers");
-  if (!result->problems.empty()) throw std::runtime_error(result->problems[0]);
+  if (!result->problems.empty()) throw std::runtime_error(Sentence(result->problems[0]));
   const DraftOptions draft_options{.touching = poses.options().touching};
   const TaskDraft draft = DraftOfTable(arguments.name, task, result->X_TP);
   Report(draft, draft_options, SaveTask(draft, arguments.folder, arguments.replace, draft_options));

@@ -161,7 +161,7 @@ DraftType MakeType(const std::string& name, const std::string& colour, const Tri
 TaskDraft DraftOfModel(const std::string& name, const std::vector<MeshPiece>& pieces,
                        const std::vector<DraftType>& known, const DraftOptions& options) {
   TaskDraft draft;
-  draft.name = Tidy(name, "task");
+  draft.name = name;
   draft.types = known;
   for (auto& type : draft.types) type.count = 0;
   std::set<std::string> names, slots;
@@ -222,25 +222,24 @@ Contacts FindContacts(const TaskDraft& draft, const DraftOptions& options) {
   return contacts;
 }
 
-std::vector<std::string> Doubts(const TaskDraft& draft, const DraftOptions& options) {
-  std::vector<std::string> doubts;
+std::vector<Remark> Doubts(const TaskDraft& draft, const DraftOptions& options) {
+  const auto millimetres = [](double metres) { return static_cast<int>(std::lround(metres * 1000)); };
+  const double deep = std::max(kOverlap, options.touching);
+  std::vector<Remark> doubts;
   for (const auto& type : draft.types) {
     const double size = Extent(type.mesh).diameter;
-    const auto millimetres = std::to_string(std::lround(size * 1000)) + " mm";
-    if (size < kSmallest) doubts.push_back(type.name + " is only " + millimetres + " long: are the units right?");
-    if (size > kLargest) doubts.push_back(type.name + " is " + millimetres + " long: are the units right?");
-    if (!ColourWords().contains(type.colour)) doubts.push_back(type.name + " has no colour that the robot can say");
+    if (size < kSmallest) doubts.push_back({"small", type.name, "", millimetres(size)});
+    if (size > kLargest) doubts.push_back({"large", type.name, "", millimetres(size)});
+    if (!ColourWords().contains(type.colour)) doubts.push_back({"colourless", type.name});
   }
   std::vector<bool> joined(draft.parts.size(), false);
   ForEachPair(draft, options.touching, [&](int i, int j, const Touch& touch) {
     const auto& [a, b] = std::pair(draft.parts[static_cast<size_t>(i)], draft.parts[static_cast<size_t>(j)]);
     if (touch.points >= kLeastContact) joined[static_cast<size_t>(i)] = joined[static_cast<size_t>(j)] = true;
-    if (touch.depth > kOverlap)
-      doubts.push_back(a.slot + " and " + b.slot + " overlap by " + std::to_string(std::lround(touch.depth * 1000)) +
-                       " mm");
+    if (touch.depth > deep) doubts.push_back({"overlap", a.slot, b.slot, millimetres(touch.depth)});
   });
   for (size_t k = 0; draft.parts.size() > 1 && k < joined.size(); ++k) {
-    if (!joined[k]) doubts.push_back(draft.parts[k].slot + " touches no other part");
+    if (!joined[k]) doubts.push_back({"alone", draft.parts[k].slot});
   }
   return doubts;
 }
@@ -279,7 +278,9 @@ std::string TaskFileText(const TaskDraft& draft, const Contacts& contacts, const
   return text + "steps: [" + steps + "]\n";
 }
 
-fs::path SaveTask(const TaskDraft& draft, const fs::path& folder, bool replace, const DraftOptions& options) {
+fs::path SaveTask(const TaskDraft& named, const fs::path& folder, bool replace, const DraftOptions& options) {
+  TaskDraft draft = named;
+  draft.name = Tidy(named.name, "task");
   const fs::path file = folder / (draft.name + ".yaml"), meshes = folder / draft.name;
   if (draft.types.empty()) throw std::runtime_error("a task needs at least one part");
   if (!replace && fs::exists(file)) throw std::runtime_error("there is a task '" + draft.name + "' already");

@@ -9,6 +9,7 @@
 #include "common/assembly/part_poses.h"
 #include "common/assembly/task.h"
 #include "tools/task/mesh_pieces.h"
+#include "tools/task/remark.h"
 
 namespace coach {
 
@@ -58,15 +59,14 @@ struct Contacts {
 };
 Contacts FindContacts(const TaskDraft& draft, const DraftOptions& options = {});
 
-/// What a person should look at: parts that overlap, that touch nothing, that are too small to see, equal colours of
-/// different shapes ... Sentences.
-std::vector<std::string> Doubts(const TaskDraft& draft, const DraftOptions& options = {});
+/// What a person should look at: parts that overlap, that touch nothing, that are too small to see ...
+std::vector<Remark> Doubts(const TaskDraft& draft, const DraftOptions& options = {});
 
 /// The task file's text; meshes are in `mesh_folder` beside it as TYPE.ply, mm.
 std::string TaskFileText(const TaskDraft& draft, const Contacts& contacts, const std::string& mesh_folder);
 
-/// Writes NAME.yaml and NAME/TYPE.ply into a folder and reads them back with the loader's own checks; nothing is left
-/// if they fail. @return the file
+/// Writes NAME.yaml and NAME/TYPE.ply into a folder (NAME: the draft's name, what is no letter, digit, - or _ made _)
+/// and reads them back with the loader's own checks; nothing is left if they fail. @return the file
 /// @throws ConfigurationError or std::runtime_error saying what is wrong; also if a task of this name is there and
 /// `replace` is false.
 std::filesystem::path SaveTask(const TaskDraft& draft, const std::filesystem::path& folder, bool replace = false,

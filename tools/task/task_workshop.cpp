@@ -37,6 +37,14 @@ class TrialFolder {
   fs::path path_;
 };
 
+Json RemarksJson(const std::vector<Remark>& remarks) {
+  Json list = Json::array();
+  for (const Remark& remark : remarks)
+    list.push_back(
+        {{"kind", remark.kind}, {"part", remark.part}, {"other", remark.other}, {"millimetres", remark.millimetres}});
+  return list;
+}
+
 Json SizeJson(const TriangleMesh& mesh) {
   const MeshExtent extent = Extent(mesh);
   Json size = Json::array();
@@ -89,18 +97,15 @@ std::vector<MeshPiece> TaskWorkshop::Pieces(const std::string& file, double scal
   return pieces;
 }
 
-TaskDraft TaskWorkshop::Draft(const std::string& request, const std::shared_ptr<const Task>& learned,
-                              DraftOptions& options) const {
+LearnedPoses::Result TaskWorkshop::OnTable(const Task* task) const {
+  if (!task) throw std::invalid_argument("there is no task whose parts could be on the table");
+  const std::lock_guard lock(mutex_);
+  return learned_.Mean(*task);
+}
+
+TaskDraft TaskWorkshop::DraftOfFiles(const std::string& request, const DraftOptions& options) const {
   const Json asked = Json::parse(request);
   const std::string name = asked.at("name");
-  if (asked.value("table", false)) {
-    if (!learned) throw std::invalid_argument("there is no task whose parts could be on the table");
-    const std::lock_guard lock(mutex_);
-    const auto mean = learned_.Mean(*learned);
-    if (!mean.problems.empty()) throw std::invalid_argument(mean.problems[0]);
-    options.touching = learned_.options().touching;
-    return DraftOfTable(name, *learned, mean.X_TP);
-  }
   const double scale = asked.value("units", "mm") == "m" ? 1000 : 1;
   std::vector<DraftType> types;
   for (const auto& part : asked.value("parts", Json::array())) {
@@ -133,10 +138,18 @@ std::string TaskWorkshop::Make(const std::string& request, const std::shared_ptr
   const Json asked = Json::parse(request);
   DraftOptions options;
   try {
-    const TaskDraft draft = Draft(request, learned, options);
+    TaskDraft draft;
+    if (asked.value("table", false)) {
+      const auto mean = OnTable(learned.get());
+      if (!mean.problems.empty()) return Dump({{"doubts", RemarksJson(mean.problems)}});
+      options.touching = learned_.options().touching;
+      draft = DraftOfTable(asked.at("name"), *learned, mean.X_TP);
+    } else {
+      draft = DraftOfFiles(request, options);
+    }
     const TrialFolder trial;
     const Task task = LoadTask(SaveTask(draft, trial.path(), false, options));
-    Json json{{"doubts", Doubts(draft, options)},
+    Json json{{"doubts", RemarksJson(Doubts(draft, options))},
               {"parts", Json::array()},
               {"joints", task.connections.size()},
               {"file", ""}};

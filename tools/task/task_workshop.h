@@ -31,14 +31,15 @@ class TaskWorkshop {
   std::string AddMesh(const std::string& name, const std::string& bytes);
 
   /// {name, units, parts: [{file, name, colour, count}], model: file or "", table: bool, save: bool, replace: bool}
-  /// -> {doubts: [...], parts: [{name, colour, count, symmetric}], joints, picture: SVG of the whole, file: "" unless
-  /// saved}
+  /// -> {doubts: [{kind, part, other, millimetres}], parts: [{name, colour, count, symmetric}], joints, picture: SVG of
+  /// the whole, file: "" unless saved}; {doubts} alone if the parts on the table can't be learned
   /// @param learned the lesson's task, whose parts are on the table; may be null
   /// @throws as AddMesh does
   std::string Make(const std::string& request, const std::shared_ptr<const Task>& learned);
 
  private:
-  TaskDraft Draft(const std::string& request, const std::shared_ptr<const Task>& learned, DraftOptions& options) const;
+  LearnedPoses::Result OnTable(const Task* task) const;
+  TaskDraft DraftOfFiles(const std::string& request, const DraftOptions& options) const;
   std::vector<MeshPiece> Pieces(const std::string& file, double metres_per_unit) const;
 
   const std::function<std::filesystem::path()> folder_;

@@ -3,6 +3,7 @@
 import { add, apply, rotationOf } from "/body.js";
 
 const kView = { left: -0.46, right: 0.46, near: -0.34, far: 0.62 };  // m from the table's middle: what must be seen
+const kLargestHand = 0.08;  // m: an arm or a body is drawn no larger
 const kLight = [0.35, -0.45, 0.82];
 
 export class Table {
@@ -145,7 +146,7 @@ export class Table {
   drawHand(context, hand) {
     if (!hand.centre.every(Number.isFinite) || !Number.isFinite(hand.radius)) return;
     const [x, y] = this.at(hand.centre);
-    const r = Math.max(14, this.scale * hand.radius);
+    const r = Math.max(14, this.scale * Math.min(hand.radius, kLargestHand));
     const glow = context.createRadialGradient(x, y, r * 0.2, x, y, r);
     glow.addColorStop(0, "rgba(236, 170, 130, .85)");
     glow.addColorStop(1, "rgba(236, 170, 130, .15)");

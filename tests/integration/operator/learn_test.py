@@ -123,7 +123,7 @@ class LearnTest(unittest.TestCase):
             film.wait(60)
             page.type("#new-name", "by_page")
             page.click("#new-check")
-            page.wait_for("return document.querySelector('#new-content .verdict.good')?.innerText.startsWith('2 parts, 1 connection')", 20)
+            page.wait_for("return document.querySelector('#new-content .verdict.good')?.innerText.startsWith('Parts: 2. Connections: 1.')", 20)
             page.click("#new-save")
             page.wait_for("return document.querySelector('#new-content a[href^=\"api/task/book\"]')", 20)
             if SCREENSHOTS:

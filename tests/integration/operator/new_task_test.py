@@ -53,7 +53,7 @@ class NewTaskTest(unittest.TestCase):
             self.assertEqual(page.run(AUDIT), [])
             page.type("#new-files", str(file))
             page.wait_for("return document.querySelector('#new-picture img') && document.querySelector('#new-content .verdict.good')", 20)
-            self.assertIn("3 parts, 2 connections", page.text("#new-content"))
+            self.assertIn("Parts: 3. Connections: 2.", page.text("#new-content"))
             self.assertEqual(page.run(AUDIT), [])
             if SCREENSHOTS:
                 page.screenshot(SCREENSHOTS / "new_task.png")

@@ -1,5 +1,5 @@
 // The page for new tasks: from mesh files, or from what was built on the table.
-import {byId, element, rebuild, swatch} from './dom.js';
+import {byId, element, readable, rebuild, swatch} from './dom.js';
 import {colourOf} from './colours.js';
 import {post, postFile} from './connection.js';
 import {showPictureIn} from './camera.js';
@@ -31,6 +31,8 @@ async function receive(files) {
   redraw();
 }
 
+const remark = ({kind, part, other, millimetres}) => t(`new.remark.${kind}`, readable(part), readable(other), millimetres);
+
 /** Which files make the task: one model, or a file for each part. */
 function request(save) {
   const {name, units, colours} = draft;
@@ -44,7 +46,7 @@ async function make(save) {
   redraw();
   const answer = await post('api/task/make', request(save));
   draft.busy = false;
-  draft.problem = answer.parts ? '' : answer.error ?? t('no_network');
+  draft.problem = answer.parts ? '' : answer.doubts?.map(remark).join(' ') ?? answer.error ?? t('no_network');
   draft.made = answer.parts ? answer : null;
   redraw();
 }
@@ -76,7 +78,7 @@ function result() {
   if (!made) return null;
   return [
     element('p', {class: 'verdict good', role: 'status'}, t('new.understood', made.parts.reduce((sum, part) => sum + part.count, 0), made.joints)),
-    made.doubts.map((doubt) => element('p', {class: 'verdict bad'}, doubt)),
+    made.doubts.map((doubt) => element('p', {class: 'verdict bad'}, remark(doubt))),
     element('ul', {class: 'checks'}, made.parts.map((part) => element('li', {}, swatch(colourOf({colour: part.colour, rgb: [136, 136, 136]})),
       element('span', {}, `${part.count} × ${part.name}`), draft.way === 'model' ? choice(part.colour, COLOURS, (one) => t(`colour.${one}`), (colour) => set({colours: {...draft.colours, [part.name]: colour}}), `colour-${part.name}`) : element('small', {}, t(`colour.${part.colour}`))))),
     made.file && element('p', {class: 'verdict good', role: 'status'}, t('new.saved', made.file)),

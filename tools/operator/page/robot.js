@@ -2,7 +2,7 @@
 import {byId, element, rebuild} from './dom.js';
 import {t} from './words.js';
 
-const ACT = 0, STARTED = 2, DONE = 3;
+const ACT = 0, STARTED = 2, DONE = 3, INTERRUPTED = 4;
 const LOOK = ['', 'now', 'now', 'good', '', 'bad', 'bad'];
 
 /** The act that is being said, or null. */
@@ -13,10 +13,11 @@ export function currentAct(state) {
 export function showRobot(state) {
   const {robot, acts} = state;
   const now = currentAct(state);
-  const latest = now ?? [...acts].reverse().find((act) => act.kind === ACT && act.text && act.state === DONE);
+  const latest = now ?? [...acts].reverse().find((act) => act.kind === ACT && act.text && [DONE, INTERRUPTED].includes(act.state));
+  const said = latest && latest.state !== INTERRUPTED, text = said ? latest.text : t('silent');
   const speech = byId('speech');
-  if (speech.textContent !== (latest?.text ?? t('silent'))) speech.textContent = latest?.text ?? t('silent');
-  speech.lang = latest?.language ?? '';
+  if (speech.textContent !== text) speech.textContent = text;
+  speech.lang = said ? latest.language : '';
   speech.classList.toggle('silent', !now);
   byId('robot-state').textContent = !robot.alive ? t('robot_off') : [
     robot.connected ? t(`back_end.${robot.back_end}`) : t('robot_apart'),

@@ -97,11 +97,22 @@ TEST_F(TaskDraftTest, DoubtsAreSaid) {
   for (auto& v : pieces[0].mesh.vertices) v += Vector3(0, 0, 1);
   for (auto& v : pieces[1].mesh.vertices) v += Vector3(0, 0.02, 0);
   const auto doubts = Doubts(DraftOfModel("r", pieces, {}));
-  EXPECT_THAT(doubts, testing::Contains(HasSubstr("touches no other part")));
-  EXPECT_THAT(doubts, testing::Contains(HasSubstr("overlap by")));
+  std::string all;
+  for (const Remark& doubt : doubts) all += Sentence(doubt) + "; ";
+  EXPECT_THAT(all, HasSubstr("touches no other part"));
+  EXPECT_THAT(all, HasSubstr("overlap by"));
   TriangleMesh metres = BoxMesh({100, 50, 30});
-  EXPECT_THAT(Doubts({"r", {MakeType("a", "beige", metres)}, {}}),
-              testing::ElementsAre(HasSubstr("are the units right"), HasSubstr("no colour")));
+  const auto of_units = Doubts({"r", {MakeType("a", "beige", metres)}, {}});
+  ASSERT_EQ(of_units.size(), 2u);
+  EXPECT_THAT(Sentence(of_units[0]), HasSubstr("are the units right"));
+  EXPECT_EQ(of_units[1].kind, "colourless");
+}
+
+TEST_F(TaskDraftTest, ANameNeverLeadsOutOfTheFolder) {
+  const TaskDraft draft{"../evil\nparts: []", {MakeType("a", "blue", BoxMesh({0.1, 0.05, 0.03}))}, {}};
+  const auto file = SaveTask(draft, folder_);
+  EXPECT_EQ(file.parent_path(), folder_);
+  EXPECT_EQ(LoadTask(file).name, "___evil_parts____");
 }
 
 TEST_F(TaskDraftTest, ATaskThatIsThereIsOnlyReplacedWhenAsked) {
@@ -155,8 +166,10 @@ TEST_F(TaskDraftTest, AStructureIsLearnedFromTheTable) {
     seen.parts[0].X_TP.translation().x() += 0.001;
     learned.Add(seen);
   }
-  EXPECT_THAT(learned.Mean(rectangle_).problems,
-              testing::ElementsAre("long_1 does not lie still", "long_2 is not seen well"));
+  const auto problems = learned.Mean(rectangle_).problems;
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_EQ(Sentence(problems[0]), "long_1 does not lie still");
+  EXPECT_EQ(Sentence(problems[1]), "long_2 is not seen well");
 }
 
 TEST_F(TaskDraftTest, ThePictureBookHasAPageAStep) {
