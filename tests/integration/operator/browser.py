@@ -12,6 +12,8 @@ import urllib.request
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
          "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage"]
 
+NARROWEST = 500  # px, of a window
+
 
 def missing():
     """What a machine lacks for these tests; empty if nothing."""
@@ -103,9 +105,9 @@ class Browser:
         raise TimeoutError(f"after {seconds} s still not true: {script} {arguments}")
 
     def size(self, width, height):
-        """Returns when the page has been laid out for it (no window is narrower than 500 px)."""
-        given = self._call("POST", self._session + "/window/rect", {"width": width, "height": height})
-        self.wait_for("return outerWidth === arguments[0] && outerHeight === arguments[1]", 10, given["width"], given["height"])
+        """Returns when the page has been laid out for it."""
+        self._call("POST", self._session + "/window/rect", {"width": width, "height": height})
+        self.wait_for("return outerWidth === arguments[0] && outerHeight === arguments[1]", 10, max(width, NARROWEST), height)
         self._call("POST", self._session + "/execute/async", {"script": "requestAnimationFrame(() => requestAnimationFrame(arguments[0]))", "args": []})
 
     def screenshot(self, file):
