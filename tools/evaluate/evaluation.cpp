@@ -247,7 +247,7 @@ Plot DistancePlot(const SceneTruth& truth, const std::vector<Evaluation>& result
   Plot plot{.title = "Error of the distance between the first two parts",
             .x_label = "time (s)",
             .y_label = "mm",
-            .y_low = 0.01,
+            .y_low = 0.1,
             .y_high = 1000};
   for (const Evaluation& r : results) {
     plot.series.push_back({r.name, Times(truth), DistanceErrors(truth, r.estimates, r.errors)});

@@ -141,8 +141,29 @@ void Child::CarryGroup(int thing, const Pose& X_W, double lift, double seconds) 
   performance_->things.Add(thing, {.start = now_, .end = now_ + seconds, .from = from, .to = X_W, .lift = lift});
 }
 
+/// The lift (m) from `least` on with which nothing is met on the way; `least` if there is none.
+double Child::FreeLift(int thing, const Pose& X_W, double least) const {
+  constexpr int kSamples = 80;
+  const Pose from = PoseOf(thing);
+  std::vector<int> others;
+  for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
+    if (!Together(i, thing)) others.push_back(i);
+  }
+  for (double lift = least; lift < least + 0.25; lift += 0.03) {
+    const ThingSegment way{.start = 0, .end = kSamples, .from = from, .to = X_W, .lift = lift};
+    bool free = true;
+    for (int k = 1; k < kSamples && free; ++k) {
+      const Pose X_by = PoseDuring(way, k) * from.inverse();
+      for (const int member : GroupMembers(thing)) free = free && !Blocked(member, X_by * PoseOf(member), others);
+    }
+    if (free) return lift;
+  }
+  return least;
+}
+
 void Child::Carry(Side hand, const Pose& X_W, double lift, double seconds) {
   const int thing = HeldBy(hand);
+  lift = FreeLift(thing, X_W, lift);
   const Pose from = PoseOf(thing);
   const Matrix3 turn = X_W.linear() * from.linear().transpose();
   if (seconds <= 0) {
@@ -205,9 +226,13 @@ bool Child::Blocked(int part, const Pose& X_W, const std::vector<int>& things) c
                      [&](int t) { return t != part && solids_.Overlap(part, X_W, t, PoseOf(t)); });
 }
 
-Vector3 Child::Approach(int part, const Pose& X_W) const {
+bool Child::Blocked(int part, const Pose& X_W) const {
   std::vector<int> things(group_.size());
   std::iota(things.begin(), things.end(), 0);
+  return Blocked(part, X_W, things);
+}
+
+Vector3 Child::Approach(int part, const Pose& X_W) const {
   std::vector<Vector3> directions{Vector3::UnitZ()};
   for (int i = 0; i < 3; ++i) {
     const Vector3 axis = X_W.linear().col(i);
@@ -221,7 +246,7 @@ Vector3 Child::Approach(int part, const Pose& X_W) const {
     const Vector3& d = directions[k == 0 ? 0 : 1 + (first + k) % (directions.size() - 1)];
     bool free = true;
     for (const double way : {0.004, 0.01, 0.02, 0.03, 0.045, 0.06})
-      free = free && !Blocked(part, Shifted(X_W, way * d), things);
+      free = free && !Blocked(part, Shifted(X_W, way * d));
     if (free) return d;
   }
   return Vector3::UnitZ();

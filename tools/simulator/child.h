@@ -36,7 +36,8 @@ class Child {
   Side NearerHand(const Vector3& p_W) const { return p_W.x() > 0 ? Side::kLeft : Side::kRight; }
 
   void Reach(Side hand, int thing);
-  /// Moves what the hand holds (with all that is connected to it). @param seconds 0: by the style's speed.
+  /// Moves what the hand holds (with all that is connected to it). @param lift m over the straight way, more if
+  /// something is in the way. @param seconds 0: by the style's speed.
   void Carry(Side hand, const Pose& X_W, double lift, double seconds = 0);
   /// Opens the hand; it goes home while other acts go on.
   void Release(Side hand);
@@ -60,13 +61,16 @@ class Child {
   /// Free direction (world, unit) along which a part comes to X_W without passing through another thing, or up.
   Vector3 Approach(int part, const Pose& X_W) const;
   std::vector<int> GroupMembers(int thing) const;
+  /// True if a part at X_W would pass through one of these things, or through any.
   bool Blocked(int part, const Pose& X_W, const std::vector<int>& things) const;
+  bool Blocked(int part, const Pose& X_W) const;
 
  private:
   int Group(int thing) const { return group_[static_cast<size_t>(thing)]; }
   HandPose GraspOf(Side hand, int thing, Vector3* p_thing) const;
   void MoveHand(Side hand, const HandPose& to, double lift, double seconds);
   double TimeFor(double distance) const;
+  double FreeLift(int thing, const Pose& X_W, double least) const;
   void CarryGroup(int thing, const Pose& X_W, double lift, double seconds);
   void Event(const std::string& kind, std::vector<int> things, Side hand);
 

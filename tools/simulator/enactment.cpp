@@ -181,6 +181,7 @@ struct Enactment::Impl {
       joint.near_miss = random_.Uniform(0.010, 0.016);
       joint.near_miss_name = task_.connections[static_cast<size_t>(closed[0])].name;
     }
+    MakeRoom(part, child_.PoseOf(joint.base) * joint.X_base_part);
     const Side hand = HandFor(part);
     const double time = child_.Join(hand, joint);
     for (int c : closed) {
@@ -189,6 +190,18 @@ struct Enactment::Impl {
       Declare(time, "connect", connection.name, Part(connection.slot_a), Part(connection.slot_b));
     }
     LetGo();
+  }
+
+  /// Lays aside what lies where a part is to go.
+  void MakeRoom(int part, const Pose& X_W) {
+    for (const int other : Others(part)) {
+      if (!Lying(other) || !child_.Blocked(part, X_W, {other})) continue;
+      const Side hand = HandFor(other);
+      child_.Reach(hand, other);
+      child_.Carry(hand, FreePlace(other, hand), 0.05);
+      child_.Release(hand);
+      child_.Wait(0.3);
+    }
   }
 
   void Declare(double time, const std::string& kind, const std::string& connection, int a, int b) {
@@ -227,27 +240,6 @@ struct Enactment::Impl {
     child_.Cover(HandFor(part), part, random_.Uniform(1.8, 2.6));
   }
 
-  /// A free place near where the part lies.
-  Pose FreePlace(int part, double away) const {
-    const Pose X = child_.PoseOf(part);
-    for (int attempt = 0; attempt < 60; ++attempt) {
-      const double a = random_.Uniform(0, 2 * M_PI), d = away * random_.Uniform(0.7, 1.4);
-      Pose Y = X;
-      Y.translation() += Vector3(d * std::cos(a), d * std::sin(a), 0);
-      Y.linear() = Eigen::AngleAxisd(random_.Uniform(-1, 1), Vector3::UnitZ()).toRotationMatrix() * X.linear();
-      if (std::abs(Y.translation().x()) > kReachX || Y.translation().y() < kNearY || Y.translation().y() > kFarY)
-        continue;
-      const Spot c = Footprint(solids_, part, Y);
-      bool free = true;
-      for (int other : Others(part)) {
-        const Spot o = Footprint(solids_, other, child_.PoseOf(other));
-        free = free && (c.centre - o.centre).norm() > c.radius + o.radius + 0.01;
-      }
-      if (free) return Y;
-    }
-    return X;
-  }
-
   void LeaveAndReturn(int part) {
     const Side hand = HandFor(part);
     child_.Reach(hand, part);
@@ -255,27 +247,36 @@ struct Enactment::Impl {
     up.translation() = Vector3(hand == Side::kLeft ? 0.12 : -0.12, 0.33, 0.48);
     child_.Carry(hand, up, 0);
     child_.Wait(random_.Uniform(0.8, 1.8));
-    Pose lying = FreePlaceFrom(part, hand);
+    Pose lying = FreePlace(part, hand);
     child_.Carry(hand, lying, 0);
     child_.Release(hand);
     child_.Wait(0.5);
   }
-  Pose FreePlaceFrom(int part, Side hand) const {
-    // Back to the hand's side of the table, lying as before the part was lifted.
+  /// A place on the hand's side of the table, apart from everything and from what will be built. Lying as before.
+  Pose FreePlace(int part, Side hand) const {
     for (int attempt = 0; attempt < 80; ++attempt) {
       const double x = (hand == Side::kLeft ? 1 : -1) * random_.Uniform(0.1, kReachX);
       const Matrix3 R =
           Eigen::AngleAxisd(random_.Uniform(-1, 1), Vector3::UnitZ()).toRotationMatrix() * child_.PoseOf(part).linear();
       const Pose X = Resting(solids_, part, R, x, random_.Uniform(kNearY, kFarY));
-      const Spot c = Footprint(solids_, part, X);
-      bool free = true;
-      for (int other : Others(part)) {
-        const Spot o = Footprint(solids_, other, child_.PoseOf(other));
-        free = free && (c.centre - o.centre).norm() > c.radius + o.radius + 0.01;
-      }
-      if (free) return X;
+      if (IsApart(part, X) && !IsInStructure(part, X)) return X;
     }
     return Resting(solids_, part, child_.PoseOf(part).linear(), hand == Side::kLeft ? 0.3 : -0.3, -0.2);
+  }
+  bool IsApart(int part, const Pose& X) const {
+    const Spot c = Footprint(solids_, part, X);
+    const auto others = Others(part);
+    return std::all_of(others.begin(), others.end(), [&](int other) {
+      const Spot o = Footprint(solids_, other, child_.PoseOf(other));
+      return (c.centre - o.centre).norm() > c.radius + o.radius + 0.01;
+    });
+  }
+  /// True if a part is in the way of the finished structure.
+  bool IsInStructure(int part, const Pose& X) const {
+    const Pose X_W = child_.PoseOf(Part(first_slot_)) * structure_.X_slot[static_cast<size_t>(first_slot_)].inverse();
+    return std::any_of(steps_.begin(), steps_.end(), [&](const BuildStep& step) {
+      return solids_.Overlap(part, X, Part(step.slot), X_W * structure_.X_slot[static_cast<size_t>(step.slot)]);
+    });
   }
 
   bool Err() {
@@ -304,7 +305,7 @@ struct Enactment::Impl {
       options.erase(options.begin() + static_cast<long>(pick));
       const Pose X_W = child_.PoseOf(o.base) * o.X_base_part;
       const double low = X_W.translation().z() + solids_.Lowest(o.part, X_W.linear());
-      if (low < -0.001 || low > 0.05 || child_.Blocked(o.part, X_W, Others(o.part))) continue;
+      if (low < -0.001 || low > 0.05 || child_.Blocked(o.part, X_W)) continue;
       const Pose back = child_.PoseOf(o.part);
       const std::string& name = task_.mistakes[static_cast<size_t>(o.mistake)].name;
       const Side hand = HandFor(o.part);

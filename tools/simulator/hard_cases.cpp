@@ -1,6 +1,7 @@
 #include "tools/simulator/hard_cases.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/simulator/shapes.h"
 
@@ -44,6 +45,18 @@ std::vector<Pose> Aside(const Making& m, int a, const Pose& X_a, int b, const Po
     x += 0.09;
   }
   return poses;
+}
+
+/// The nearest place from X_W inwards at which a part can be put down from above.
+Pose FreePlace(const Child& child, int part, Pose X_W) {
+  const double inwards = X_W.translation().x() > 0 ? -0.03 : 0.03;
+  const auto above = [&] {
+    Pose X = X_W;
+    X.translation().z() += 0.01;
+    return X;
+  };
+  while (child.Blocked(part, X_W) || child.Blocked(part, above())) X_W.translation().x() += inwards;
+  return X_W;
 }
 
 }  // namespace
@@ -108,10 +121,10 @@ void Touching(Making* m) {
     m->child->Reach(Side::kRight, a);
     Pose beside = m->child->PoseOf(b);
     // Side by side, then end to end.
-    const Vector3 step =
-        i % 2 == 0 ? Vector3(0, e.high.y() - e.low.y() + 0.0006, 0) : Vector3(-(e.high.x() - e.low.x()) - 0.0006, 0, 0);
-    beside.translation() = beside * step;
-    beside.translation().z() = m->child->PoseOf(b).translation().z();
+    const int across = std::abs(beside.linear()(2, 1)) < std::abs(beside.linear()(2, 2)) ? 1 : 2;
+    const int axis = i % 2 == 0 ? across : 0;
+    const double step = e.high[axis] - e.low[axis] + 0.0006;
+    beside.translation() += (axis == 0 ? -step : step) * beside.linear().col(axis);
     m->child->Carry(Side::kRight, beside, 0.05);
     m->child->Release(Side::kRight);
     m->child->Wait(1.5);
@@ -135,11 +148,14 @@ void Fast(Making* m) {
     m->child->Carry(hand, up, 0);
     for (int i = 0; i < 4; ++i) {
       // A minimum-jerk movement's top speed is 1.875 times its average: here 1.2 m/s.
-      const Vector3 goal(i % 2 == 0 ? 0.2 : -0.2, m->random.Uniform(-0.1, 0.05), m->random.Uniform(0.06, 0.14));
-      const double way = (goal - m->child->PoseOf(0).translation()).norm();
-      const Matrix3 turn =
-          ExpRotation(Vector3(m->random.Uniform(-0.4, 0.4), m->random.Uniform(-0.4, 0.4), i % 2 == 0 ? 1.5 : -1.5));
-      m->child->Carry(hand, MakePose(turn * m->child->PoseOf(0).linear(), goal), 0, 1.875 * way / 1.2);
+      Pose goal;
+      goal.translation() << (i % 2 == 0 ? 0.2 : -0.2), m->random.Uniform(-0.1, 0.05), m->random.Uniform(0.06, 0.14);
+      goal.linear() =
+          ExpRotation(Vector3(m->random.Uniform(-0.4, 0.4), m->random.Uniform(-0.4, 0.4), i % 2 == 0 ? 1.5 : -1.5)) *
+          m->child->PoseOf(0).linear();
+      while (m->child->Blocked(0, goal)) goal.translation().z() += 0.02;
+      const double way = (goal.translation() - m->child->PoseOf(0).translation()).norm();
+      m->child->Carry(hand, goal, 0, 1.875 * way / 1.2);
       m->child->Wait(0.15);
     }
     m->child->Carry(hand, rest, 0);
@@ -161,9 +177,9 @@ void LeaveAndReturn(Making* m) {
     m->child->Wait(1.5);
     // Back on the other side of the table, turned.
     const double x = lying.translation().x() > 0 ? -0.06 - 0.05 * round : 0.06 + 0.05 * round;
-    Pose back = MakePose(Eigen::AngleAxisd(1.1, Vector3::UnitZ()).toRotationMatrix() * lying.linear(),
-                         Vector3(x, -0.26, lying.translation().z()));
-    m->child->Carry(hand, back, 0);
+    const Pose back = MakePose(Eigen::AngleAxisd(1.1, Vector3::UnitZ()).toRotationMatrix() * lying.linear(),
+                               Vector3(x, -0.26, lying.translation().z()));
+    m->child->Carry(hand, FreePlace(*m->child, 0, back), 0);
     m->child->Release(hand);
     m->child->Wait(1.2);
   }
@@ -187,7 +203,7 @@ void HandedOver(Making* m) {
     Pose down = lying;
     down.translation().x() = -lying.translation().x();
     down.translation().y() = -0.27;
-    m->child->Carry(Other(first), down, 0);
+    m->child->Carry(Other(first), FreePlace(*m->child, part, down), 0);
     m->child->Release(Other(first));
     m->child->Wait(0.6);
   }

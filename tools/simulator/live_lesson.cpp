@@ -21,8 +21,6 @@ LiveLesson::LiveLesson(Scenario scenario, const LiveLessonOptions& options)
       child_(scenario_.stage.task, solids_, StyleByName(scenario_.options.style), &scenario_.performance, &random_),
       lesson_(scenario_.stage.task, structure_, solids_, &child_, &scenario_.performance, &random_) {}
 
-LiveLesson::~LiveLesson() = default;
-
 void LiveLesson::Hear(const std::string& phrase_key, int step) {
   if (phrase_key.rfind("wrong", 0) == 0) SayWrong();
   if (phrase_key == "step" || phrase_key.rfind("idle_", 0) == 0) Ask(step);
@@ -68,7 +66,8 @@ void LiveLesson::Decide(double time) {
   ++steps_;
   const bool errs =
       options_.temper == LiveLessonOptions::Temper::kErrs ? steps_ % 2 == 0 : alone && random_.Chance(0.5);
-  if (!errs || !lesson_.Err()) lesson_.Build(alone ? -1 : *asked_);
+  if (errs && lesson_.Err()) return;  // and comes back to what it was asked once this is undone
+  lesson_.Build(alone ? -1 : *asked_);
   asked_.reset();
 }
 

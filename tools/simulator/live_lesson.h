@@ -1,7 +1,6 @@
 // A lesson that goes on as long as it is watched, with a child that hears what the robot says.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -31,7 +30,8 @@ class LiveLesson {
  public:
   /// @param scenario of kind "ready".
   LiveLesson(Scenario scenario, const LiveLessonOptions& options);
-  ~LiveLesson();
+  LiveLesson(const LiveLesson&) = delete;
+  LiveLesson& operator=(const LiveLesson&) = delete;
 
   /// The robot says something. @param phrase_key of ROBOT_COMMAND. @param step connection that the robot is at, -1 none
   void Hear(const std::string& phrase_key, int step);

@@ -69,10 +69,10 @@ void Making::Place(std::vector<Pose> parts) {
 }
 
 void Making::Scatter(double any_face) {
-  Task loose = task;
-  loose.connections.clear();
-  const Structure none = FinishedStructure(loose);
-  Place(ScatterParts(loose, *solids, none, Pose::Identity(), scenario.stage.room.clutter, any_face, random));
+  Task loose;  // nothing to build
+  loose.types = task.types;
+  loose.parts = task.parts;
+  Place(ScatterParts(loose, *solids, {}, Pose::Identity(), scenario.stage.room.clutter, any_face, random));
 }
 
 Pose Flat(const Making& m, int part, double x, double y, double yaw) {

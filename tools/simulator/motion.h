@@ -22,6 +22,9 @@ struct ThingSegment {
   Pose X_carrier_thing = Pose::Identity();
 };
 
+/// Pose of a thing without carrier at a time (s); before the start `from`, after the end `to`.
+Pose PoseDuring(const ThingSegment& segment, double time);
+
 /// Where things are at any time. Things are numbered by the caller.
 class ThingTracks {
  public:

@@ -1,7 +1,6 @@
 #include "tools/study/ablation.h"
 
 #include <openssl/evp.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -15,8 +14,8 @@
 
 #include "common/assembly/task_file.h"
 #include "tools/evaluate/evaluation.h"
-#include "tools/simulator/scene_recorder.h"
 #include "tools/study/report_text.h"
+#include "tools/study/study_scene.h"
 
 namespace coach {
 namespace {
@@ -51,13 +50,7 @@ std::filesystem::path SceneFolder(const AblationScene& scene, const ExperimentOp
   const auto end = std::upper_bound(made.frame_times.begin(), made.frame_times.end(), scene.seconds);
   made.image_ids.resize(static_cast<size_t>(end - made.frame_times.begin()));
   made.frame_times.erase(end, made.frame_times.end());
-  // Under a name of its own until it is whole: another process may be rendering the same one.
-  const std::filesystem::path part = folder.string() + ".part" + std::to_string(getpid());
-  std::filesystem::remove_all(part);
-  RecordScene(made, part, {}, {});
-  std::error_code taken;
-  std::filesystem::rename(part, folder, taken);
-  if (taken) std::filesystem::remove_all(part);
+  RenderOnce(made, folder);
   return folder;
 }
 

@@ -27,7 +27,7 @@ int Run(int argc, char** argv) {
   app.add_option("--fps", options.fps, "Hz, of lessons")->check(CLI::Range(1.0, 60.0))->capture_default_str();
   app.add_option("--tasks", options.tasks, "folder of task files")->capture_default_str();
   app.add_flag("--merge", merge, "only the report, of the results that are there");
-  app.add_flag("--keep-scenes", options.keep_scenes, "in OUT/scenes");
+  app.add_flag("--keep-scenes", options.keep_scenes, "in OUT/scenes; a scene that is there is not made again");
   CLI11_PARSE(app, argc, argv);
   const coach::Experiment& experiment = coach::FindExperiment(name);
   run.folder = out.empty() ? "study-" + name : out;

@@ -78,6 +78,25 @@ TEST(LiveLessonTest, AChildThatErrsIsCorrected) {
   EXPECT_EQ(Count(lesson, "wrong_connect"), Count(lesson, "disconnect"));
 }
 
+TEST(LiveLessonTest, AChildThatErrsComesBackToWhatItWasAsked) {
+  LiveLesson lesson = Start(Temper::kErrs);
+  const std::vector<int>& steps = lesson.scenario().stage.task.steps;
+  double t = 0;
+  const auto pass = [&](double seconds) {
+    for (const double end = t + seconds; t < end; t += 0.1) lesson.Advance(t);
+  };
+  lesson.Ask(steps[0]);
+  pass(20);
+  ASSERT_EQ(Count(lesson, "connect"), 1);
+  lesson.Ask(steps[1]);
+  pass(10);
+  ASSERT_EQ(Count(lesson, "wrong_connect"), 1);
+  lesson.SayWrong();
+  pass(20);
+  EXPECT_EQ(Count(lesson, "disconnect"), 1);
+  EXPECT_EQ(Count(lesson, "connect"), 2);
+}
+
 TEST(LiveLessonTest, AChildThatNeverListensIsNotMovedByWords) {
   LiveLesson quiet = Start(Temper::kNeverListens), spoken_to = Start(Temper::kNeverListens);
   EXPECT_EQ(Teach(&quiet, false), Teach(&spoken_to, true));

@@ -94,6 +94,11 @@ TEST(RayTracerTest, InsideAndOutsideOfAMesh) {
   EXPECT_TRUE(tracer.Inside(box, {0.09, 0.04, -0.04}));
   EXPECT_FALSE(tracer.Inside(box, {0.11, 0, 0}));
   EXPECT_FALSE(tracer.Inside(box, {0, 0, -0.06}));
+  // Points outside whose rays graze an edge.
+  for (double x = -0.3; x < 0.3; x += 1e-4) {
+    EXPECT_FALSE(tracer.Inside(box, {x, 0.0502, 0.01}));
+    EXPECT_FALSE(tracer.Inside(box, {x, 0.01, -0.0502}));
+  }
 }
 
 }  // namespace

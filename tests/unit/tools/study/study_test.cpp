@@ -22,7 +22,7 @@ class StudyTest : public testing::Test {
     const int number = std::stoi(name.substr(name.size() - 4));
     return "{\"number\":" + std::to_string(number) +
            ",\"task\":\"square\",\"found\":" + (number % 3 ? "true" : "false") +
-           ",\"after\":0.1,\"parts\":4,\"wrong_parts\":0}";
+           ",\"after\":0.1,\"parts\":4,\"wrong\":[{\"part\":\"long\",\"mm\":1.5,\"degrees\":null,\"visible\":0.6}]}";
   }
   void Run(const std::filesystem::path& folder, const Shard& shard, int jobs = 1) {
     std::ostringstream log;
@@ -49,6 +49,7 @@ TEST_F(StudyTest, MergedShardsEqualTheWhole) {
   EXPECT_EQ(computed_, 20);
   EXPECT_EQ(Report(folder_ / "whole"), Report(folder_ / "parts"));
   EXPECT_THAT(Report(folder_ / "whole"), HasSubstr("(3/10"));
+  EXPECT_THAT(Report(folder_ / "whole"), HasSubstr("| 9 | square | long | 1.5 | null | 0.6 |"));
 }
 
 TEST_F(StudyTest, WhatIsThereIsNotComputedAgain) {
