@@ -118,6 +118,18 @@ class PageTest(unittest.TestCase):
             page.open(lesson.url)
             self.assertEqual(page.run(WORDS), [])
 
+    def test_events_from_before_the_first_frame_do_not_stretch_the_timeline(self):
+        with Lesson() as lesson, Browser() as page:
+            page.open(lesson.url)
+            marks = page.run("""return import('/timeline.js').then(({addEvents, showTimeline}) => {
+                const now = 1.79e15, event = {kind: 'operator', subject: 'start', part_a: -1, part_b: -1, since: 0};
+                addEvents({lesson: {session: 99}, events: [{...event, id: 1, utime: 0}, {...event, id: 2, utime: now - 5e6}]});
+                showTimeline({data_utime: now, annotations: []}, null);
+                const track = document.querySelector('#track');
+                return [track.querySelectorAll('text').length, track.querySelectorAll('circle').length, document.querySelector('#lesson-time').innerText];
+            })""")
+            self.assertEqual(marks, [4, 2, "lesson time 0:05"])
+
     def test_other_pages_and_accessibility(self):
         with Lesson() as lesson, Browser() as page:
             page.open(lesson.url)

@@ -11,7 +11,8 @@ export function listenToState(onState, onAlive) {
   source.onmessage = (event) => { onAlive(true); onState(JSON.parse(event.data)); };
 }
 
-/** Calls `onView(view, jpeg)` for every live view; `jpeg` is null if there is no picture. */
+/** Calls `onView(view, jpeg)` with the newest live view, as often as the browser draws: a slow one leaves views out, it does
+ * not lag behind. `jpeg` is null if there is no picture. */
 export async function listenToView(onView) {
   for (;;) {
     try {
@@ -23,8 +24,12 @@ export async function listenToView(onView) {
 }
 
 async function readRecords(reader, onView) {
-  let buffer = new Uint8Array(0);
-  const text = new TextDecoder();
+  let buffer = new Uint8Array(0), newest = null;
+  const show = () => {
+    const {json, jpeg} = newest;
+    newest = null;
+    onView(JSON.parse(new TextDecoder().decode(json)), jpeg.length ? jpeg.slice() : null);
+  };
   for (;;) {
     const {value, done} = await reader.read();
     if (done) return;
@@ -34,7 +39,10 @@ async function readRecords(reader, onView) {
     buffer = joined;
     let record;
     while ((record = firstRecord(buffer))) {
-      if (record.json.length) onView(JSON.parse(text.decode(record.json)), record.jpeg.length ? record.jpeg.slice() : null);
+      if (record.json.length) {
+        if (!newest) requestAnimationFrame(show);
+        newest = record;
+      }
       buffer = buffer.subarray(record.size);
     }
   }

@@ -5,6 +5,7 @@ import {t} from './words.js';
 const COLOUR = {connect: '#1d7a46', wrong: '#b3261e', disconnect: '#b36a00', repair: '#8a5cc9', operator: '#1c5fb8', say: '#1f5f5b', session: '#566363'};
 const LANES = [['connect', 'wrong', 'disconnect', 'repair'], ['say', 'act'], ['operator', 'session']];
 const LISTED = 150;
+const MARKS = 8;  // on the track, at most
 const events = [];
 let session = null;
 
@@ -18,7 +19,8 @@ export function addEvents(state) {
   for (const event of state.events) if (!known.has(event.id)) events.push(event);
 }
 
-export const startOfLesson = () => events[0]?.utime ?? null;
+/** Data's time, us; events before the first frame have none (0) and count as the start. null: nothing has happened yet. */
+export const startOfLesson = () => (events.find((event) => event.utime > 0) ?? events[0])?.utime ?? null;
 
 export function showTimeline(state, task) {
   const start = startOfLesson();
@@ -32,11 +34,11 @@ export function showTimeline(state, task) {
 
 function track(start, end, shown, annotations) {
   const width = byId('track').clientWidth || 600, span = Math.max(end - (start ?? end), 30e6);
-  const x = (utime) => 8 + (utime - start) / span * (width - 16);
+  const x = (utime) => 8 + Math.max(utime - start, 0) / span * (width - 16);
   const root = svg('svg', {viewBox: `0 0 ${width} 74`, 'aria-hidden': 'true'});
   LANES.forEach((_, lane) => root.append(svg('line', {x1: 0, x2: width, y1: 12 + lane * 16, y2: 12 + lane * 16, stroke: '#e2dfd6'})));
   if (start === null) return root;
-  const step = [10, 30, 60, 120, 300, 600, 1800].find((s) => span / 1e6 / s <= 8) ?? 3600;
+  const step = [10, 30, 60, 120, 300, 600, 1800, 3600].find((s) => span / 1e6 / s <= MARKS) ?? span / 1e6 / MARKS;
   for (let s = 0; s <= span / 1e6; s += step) {
     root.append(svg('text', {x: x(start + s * 1e6), y: 71, 'font-size': 11, fill: '#566363', 'text-anchor': s ? 'middle' : 'start'}, clock(s)));
   }
