@@ -88,8 +88,8 @@ TEST(FrameGrabber, RecordingsPlayAtTheirOwnRateTimesTheSpeed) {
   for (const double speed : {1.0, 4.0}) {
     GrabberOptions options;
     options.speed = speed;
-    FrameGrabber grabber(Opens({Times(31, "frame")}), options, [] {});
     const auto begin = Clock::now();
+    FrameGrabber grabber(Opens({Times(31, "frame")}), options, [] {});
     const size_t frames = TakeAll(grabber).size();
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     EXPECT_EQ(static_cast<int64_t>(frames) + grabber.replaced(), 31);
