@@ -124,11 +124,20 @@ std::string ColoursValue(const Station& station, const Json& changes) {
   return Dump(all);
 }
 
-void AddRobot(const Json& robot, std::vector<Setting>& settings) {
+/// The NAO's section with another address.
+std::string NaoValue(const NaoOptions& nao, const std::string& url) {
+  Json json{{"url", url}, {"call_timeout", nao.call_timeout_s}, {"largest_volume", nao.largest_volume}};
+  if (!nao.user.empty()) json.update({{"user", nao.user}, {"token", nao.token}});
+  return Dump(json);
+}
+
+void AddRobot(const Json& robot, const Station& now, std::vector<Setting>& settings) {
   for (const char* key : {"back_end", "volume", "position", "roll_pitch_yaw"}) {
     if (robot.contains(key)) settings.push_back({{"robot", key}, Dump(robot.at(key))});
   }
-  if (robot.contains("url")) settings.push_back({{"robot", "nao"}, Dump(Json{{"url", robot.at("url")}})});
+  const NaoOptions nao = ReadRobotOptions(now.Section("robot")).nao;
+  const std::string url = robot.value("url", nao.url);
+  if (url != nao.url) settings.push_back({{"robot", "nao"}, NaoValue(nao, url)});
 }
 
 /// As every service will read it. @throws ConfigurationError
@@ -275,7 +284,7 @@ std::string TableSetup::Save(const std::string& request) {
     }
     if (asked.contains("colours"))
       settings.push_back({{"detector", "colours"}, ColoursValue(now, asked.at("colours"))});
-    if (asked.contains("robot")) AddRobot(asked.at("robot"), settings);
+    if (asked.contains("robot")) AddRobot(asked.at("robot"), now, settings);
     if (now.state_folder.empty() && !sources_.state_folder.empty() && !settings.empty())
       settings.push_back({{"state_folder"}, Dump(sources_.state_folder.string())});
     const std::string text = WithSettings(now.text, settings);

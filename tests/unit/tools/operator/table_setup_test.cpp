@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "services/robot_bridge/robot_options.h"
+
 namespace coach {
 namespace {
 
@@ -127,6 +129,17 @@ TEST_F(TableSetupTest, WithoutACameraOrATaskColoursCannotBeChosen) {
   EXPECT_THROW(setup_.SuggestColour(R"({"x": 1, "y": 1, "colour": "blue"})"), std::invalid_argument);
   EXPECT_THAT(Status()["camera"]["problems"].get<std::vector<std::string>>(), ElementsAre("no_picture"));
   EXPECT_THROW(setup_.SuggestSeat(R"({"near": 0, "far": 1, "ahead": 0.15, "height": 0.1})"), std::invalid_argument);
+}
+
+TEST_F(TableSetupTest, AnotherAddressKeepsTheRobotsLogin) {
+  Write("robot:\n  nao: {url: \"tcps://a:9503\", user: nao, token: secret}  # ours\n");
+  setup_.Save(R"({"robot": {"back_end": "nao", "url": "tcps://a:9503"}})");
+  EXPECT_THAT(Read(file_), HasSubstr("  nao: {url: \"tcps://a:9503\", user: nao, token: secret}  # ours\n"));
+  setup_.Save(R"({"robot": {"back_end": "nao", "url": "tcps://b:9503"}})");
+  const NaoOptions nao = ReadRobotOptions(ReadStation(file_).Section("robot")).nao;
+  EXPECT_EQ(nao.url, "tcps://b:9503");
+  EXPECT_EQ(nao.user, "nao");
+  EXPECT_EQ(nao.token, "secret");
 }
 
 TEST_F(TableSetupTest, TheSeatComesFromTheTrackedParts) {
