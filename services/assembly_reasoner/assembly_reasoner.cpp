@@ -435,15 +435,19 @@ bool AssemblyReasoner::IsTurned(const BelievedJoint& joint) const {
   return false;
 }
 
-AssemblyMemory AssemblyReasoner::Save() const { return {impl_->joints, impl_->placement.variant}; }
+AssemblyMemory AssemblyReasoner::Save() const { return {impl_->joints, impl_->pinned, impl_->placement.variant}; }
 
 void AssemblyReasoner::Restore(const AssemblyMemory& memory) {
   const int parts = static_cast<int>(impl_->task.parts.size());
-  for (const BelievedJoint& j : memory.joints) {
-    const bool good = j.part_a >= 0 && j.part_a < j.part_b && j.part_b < parts && j.label >= kUnknownLabel &&
-                      j.label != kOpenLabel && j.label < static_cast<int>(impl_->Classes({j.part_a, j.part_b}).size());
-    if (!good) throw std::invalid_argument("the stored joints do not fit the task");
-  }
+  const auto fits = [&](const PairKey& pair, int label) {
+    return pair.first >= 0 && pair.first < pair.second && pair.second < parts && label >= kUnknownLabel &&
+           label < static_cast<int>(impl_->Classes(pair).size());
+  };
+  bool good = true;
+  for (const BelievedJoint& j : memory.joints)
+    good = good && j.label != kOpenLabel && fits({j.part_a, j.part_b}, j.label);
+  for (const auto& [pair, label] : memory.pinned) good = good && fits(pair, label);
+  if (!good) throw std::invalid_argument("the stored joints do not fit the task");
   impl_->joints.clear();
   impl_->placement = Place(impl_->task, {}, {}, memory.variant);
   std::vector<ConnectionEvent> ignored;
@@ -455,6 +459,7 @@ void AssemblyReasoner::Restore(const AssemblyMemory& memory) {
     impl_->joints.push_back(j);
     impl_->joints.back().announced = true;
   }
+  impl_->pinned = memory.pinned;
   impl_->PlaceAgain(0, ignored);
 }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,6 +67,7 @@ struct ReasonerOutput {
 /// What has to survive a restart.
 struct AssemblyMemory {
   std::vector<BelievedJoint> joints;
+  std::map<PairKey, int> pinned;  ///< labels that the operator set and evidence has not confirmed yet
   int variant = 0;
 };
 

@@ -44,7 +44,7 @@ void Lesson::Choose(size_t task) {
   reasoner_ = std::make_unique<AssemblyReasoner>(tasks_[task], options_.reasoner);
   skipped_.clear();
   poses_.reset();
-  begins_with_poses_ = resting_ = false;
+  resting_ = false;
   changed_ = now_;
   state_ = {};
 }
@@ -55,7 +55,6 @@ void Lesson::Begin(int64_t session) {
   begun_ = true;
   resting_ = false;
   skipped_.clear();
-  begins_with_poses_ = !poses_;
   policy_.Begin(now_, greeted_);
 }
 
@@ -79,8 +78,6 @@ LessonOutput Lesson::Step(const PartPoses& poses) {
   if (out.accepted) {
     poses_ = poses;
     now_ = poses.utime;
-    // Started before the camera gave its first picture: there was no time yet.
-    if (std::exchange(begins_with_poses_, false)) policy_.Begin(now_, greeted_);
     if (options_.start_by_itself && !begun_) Begin(poses.utime);
     Tell(reasoned.events, out);
     if (begun_) {
@@ -391,17 +388,18 @@ void Lesson::Finish(LessonOutput& out) {
 }
 
 LessonMemory Lesson::Save() const {
-  return {session_,       task().name, language_,   begun_,       reasoner_->Save(),
-          policy_.Save(), skipped_,    last_event_, last_command_};
+  return {session_,          task().name,    language_, begun_,      greeted_,
+          reasoner_->Save(), policy_.Save(), skipped_,  last_event_, last_command_};
 }
 
 void Lesson::Restore(const LessonMemory& memory) {
   const auto found = std::find_if(tasks_.begin(), tasks_.end(), [&](const Task& t) { return t.name == memory.task; });
   if (found == tasks_.end()) throw std::invalid_argument("the stored lesson is of an unknown task");
-  for (const int c : memory.skipped) {
-    if (c < 0 || c >= static_cast<int>(found->connections.size()))
-      throw std::invalid_argument("the stored lesson skips an unknown connection");
-  }
+  const auto is_known = [&](int c) { return c >= 0 && c < static_cast<int>(found->connections.size()); };
+  if (!std::all_of(memory.skipped.begin(), memory.skipped.end(), is_known))
+    throw std::invalid_argument("the stored lesson skips an unknown connection");
+  if (memory.policy.step != -1 && !is_known(memory.policy.step))
+    throw std::invalid_argument("the stored lesson asks for an unknown connection");
   Choose(static_cast<size_t>(found - tasks_.begin()));
   reasoner_->Restore(memory.assembly);
   skipped_ = memory.skipped;
@@ -411,9 +409,9 @@ void Lesson::Restore(const LessonMemory& memory) {
   last_event_ = memory.last_event + kIdReserve;
   last_command_ = memory.last_command + kIdReserve;
   if (!begun_) return;
-  greeted_ = true;
-  policy_.Restore(memory.policy);
-  resting_ = next_told_ = policy_.phase() == Phase::kComplete && HasNext();
+  greeted_ = memory.greeted;
+  policy_.Restore(memory.policy, greeted_);
+  resting_ = next_told_ = memory.policy.celebrated && HasNext();
   rested_since_ = 0;
 }
 

@@ -53,7 +53,7 @@ struct LessonOutput {
 struct LessonMemory {
   int64_t session = 0;
   std::string task, language;
-  bool begun = false;
+  bool begun = false, greeted = false;
   AssemblyMemory assembly;
   PolicyMemory policy;
   std::vector<int> skipped;
@@ -108,12 +108,11 @@ class Lesson {
   SpeechQueue speech_;
   ResponsePolicy policy_;
   bool begun_ = false;
-  bool begins_with_poses_ = false;  // begun, but no poses have come yet that would tell the time
-  bool greeted_ = false;            // in this session
-  bool resting_ = false;            // between two tasks
-  bool next_told_ = false;          // that another task follows
-  int64_t rested_since_ = 0;        // us; 0: the pause has not begun
-  int64_t now_ = 0, changed_ = 0;   // us, of the last poses; of them when the task was changed, 0 never
+  bool greeted_ = false;           // in this session
+  bool resting_ = false;           // between two tasks
+  bool next_told_ = false;         // that another task follows
+  int64_t rested_since_ = 0;       // us; 0: the pause has not begun
+  int64_t now_ = 0, changed_ = 0;  // us, of the last poses; of them when the task was changed, 0 never
   int64_t session_ = 0, last_event_ = 0, last_command_ = 0, help_requests_ = -1;
   std::vector<int> skipped_;
   std::optional<PartPoses> poses_;

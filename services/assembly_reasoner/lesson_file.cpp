@@ -15,23 +15,31 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 }  // namespace
 
 std::string ToJson(const LessonMemory& m) {
-  json joints = json::array(), corrections = json::array();
+  json joints = json::array(), pinned = json::array(), corrections = json::array();
   for (const BelievedJoint& j : m.assembly.joints)
     joints.push_back({j.part_a, j.part_b, j.label, j.connection, j.mistake, j.since, j.decided});
+  for (const auto& [pair, label] : m.assembly.pinned) pinned.push_back({pair.first, pair.second, label});
   for (const auto& [joint, times] : m.policy.corrections) corrections.push_back({joint[0], joint[1], joint[2], times});
   return json{{"version", kVersion},
               {"session", m.session},
               {"task", m.task},
               {"language", m.language},
               {"begun", m.begun},
+              {"greeted", m.greeted},
               {"joints", joints},
+              {"pinned", pinned},
               {"variant", m.assembly.variant},
               {"phase", static_cast<int>(m.policy.phase)},
+              {"step", m.policy.step},
+              {"made_before", m.policy.made_before},
+              {"introduced", m.policy.introduced},
+              {"announced", m.policy.announced},
+              {"celebrated", m.policy.celebrated},
               {"idle_level", m.policy.idle_level},
               {"corrections", corrections},
               {"repairs", m.policy.repairs},
@@ -50,16 +58,27 @@ LessonMemory LessonMemoryFromJson(const std::string& text) {
     m.task = j.at("task");
     m.language = j.at("language");
     m.begun = j.at("begun");
+    m.greeted = j.at("greeted");
     m.assembly.variant = j.at("variant");
     for (const json& entry : j.at("joints")) {
       const auto v = entry.get<std::array<int64_t, 7>>();
       const auto index = [&](size_t i) { return static_cast<int>(v[i]); };
       m.assembly.joints.push_back({index(0), index(1), index(2), index(3), index(4), v[5], v[6], true});
     }
+    for (const json& entry : j.at("pinned")) {
+      const auto v = entry.get<std::array<int, 3>>();
+      m.assembly.pinned[{v[0], v[1]}] = v[2];
+    }
     const int phase = j.at("phase");
     if (phase < 0 || phase > static_cast<int>(Phase::kComplete)) throw std::invalid_argument("an unknown phase");
     m.policy.phase = static_cast<Phase>(phase);
+    m.policy.step = j.at("step");
+    m.policy.made_before = j.at("made_before");
+    m.policy.introduced = j.at("introduced");
+    m.policy.announced = j.at("announced");
+    m.policy.celebrated = j.at("celebrated");
     m.policy.idle_level = j.at("idle_level");
+    if (m.policy.idle_level < 0 || m.policy.idle_level > 4) throw std::invalid_argument("an unknown hint");
     m.policy.repairs = j.at("repairs");
     for (const json& entry : j.at("corrections")) {
       const auto v = entry.get<std::array<int, 4>>();

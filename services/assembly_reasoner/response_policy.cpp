@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numbers>
 
 namespace coach {
@@ -23,6 +22,7 @@ bool ArePartners(const Task& task, int part_a, int part_b) {
   });
 }
 
+const char* Introduction(bool greeted) { return greeted ? "introduction_again" : "introduction"; }
 bool IsIdle(const std::string& key) { return key.rfind("idle_", 0) == 0; }
 bool IsWrong(const std::string& key) { return key.rfind("wrong", 0) == 0; }
 
@@ -60,24 +60,21 @@ void ResponsePolicy::ToPhase(Phase phase, const std::string& reason) {
 
 void ResponsePolicy::Begin(int64_t now, bool greeted) {
   now_ = now;
-  introduction_ = greeted ? "introduction_again" : "introduction";
+  introduction_ = Introduction(greeted);
   begun_ = true;
-  introduced_ = false;
+  introduced_ = celebrated_ = false;
   step_ = -1;
   made_before_ = 0;
   to_praise_.clear();
   corrections_.clear();
-  corrections_said_.clear();
   last_correction_ = {};
   speech_.Clear();
   ToPhase(Phase::kIntroduction, "the task begins");
-  Offer(introduction_, Priority::kExplanatory, true, -1, -1, -1, now);
 }
 
 void ResponsePolicy::Pause(int64_t now) {
   now_ = now;
   if (phase_ == Phase::kPaused) return;
-  paused_phase_ = phase_;
   speech_.Clear();
   ToPhase(Phase::kPaused, "by the operator");
   Offer("pause", Priority::kOperator, true, -1, -1, -1, now);
@@ -86,9 +83,9 @@ void ResponsePolicy::Pause(int64_t now) {
 void ResponsePolicy::Resume(int64_t now) {
   now_ = now;
   if (phase_ != Phase::kPaused) return;
-  const bool unfinished = paused_phase_ == Phase::kIntroduction && !introduced_;
-  ToPhase(unfinished || paused_phase_ == Phase::kComplete ? paused_phase_ : Phase::kAnnounce, "by the operator");
-  Offer(unfinished ? introduction_ : "resume", Priority::kOperator, true, -1, -1, -1, now);
+  const Phase after = celebrated_ ? Phase::kComplete : introduced_ ? Phase::kAnnounce : Phase::kIntroduction;
+  ToPhase(after, "by the operator");
+  if (introduced_) Offer("resume", Priority::kOperator, true, -1, -1, -1, now);
 }
 
 void ResponsePolicy::Offer(const std::string& key, Priority priority, bool solicited, int connection, int part_a,
@@ -144,7 +141,7 @@ void ResponsePolicy::NoteSight(const LessonView& view) {
   const bool lost = 2 * unseen > view.poses->parts.size();
   if (!lost) {
     hidden_since_ = 0;
-    if (phase_ == Phase::kTrackingLost) ToPhase(Phase::kWait, "the parts are seen again");
+    if (phase_ == Phase::kTrackingLost) ToPhase(Onwards(), "the parts are seen again");
     return;
   }
   if (hidden_since_ == 0) hidden_since_ = view.now;
@@ -193,8 +190,8 @@ const BelievedJoint* ResponsePolicy::WorstWrong(const LessonView& view) const {
   int least = 1 << 20;
   for (const BelievedJoint& j : view.reasoner->joints()) {
     if (j.connection >= 0 || !view.reasoner->IsSeen(j)) continue;
-    const auto said = corrections_said_.find(NameOf(j));
-    const int times = said == corrections_said_.end() ? 0 : said->second;
+    const auto said = corrections_.find(NameOf(j));
+    const int times = said == corrections_.end() ? 0 : said->second.times;
     if (times < least) {
       worst = &j;
       least = times;
@@ -203,38 +200,48 @@ const BelievedJoint* ResponsePolicy::WorstWrong(const LessonView& view) const {
   return worst;
 }
 
+/// While a mistake waits for its correction nothing else is asked for. Once everything was said about it the child may
+/// go on with it.
 void ResponsePolicy::Correct(const LessonView& view) {
   const BelievedJoint* wrong = WorstWrong(view);
-  if (wrong == nullptr) {
-    if (phase_ == Phase::kWrong) ToPhase(Phase::kWait, "the wrong connection is undone");
-    corrections_.clear();
+  if (wrong == nullptr || phase_ == Phase::kComplete) {
+    if (phase_ == Phase::kWrong) ToPhase(Onwards(), "the wrong connection is undone");
+    for (auto& [name, correction] : corrections_) correction.wrong_since = 0;
     return;
   }
-  const JointName name = NameOf(*wrong);
-  const auto& belief = *view.reasoner;
-  const double p = belief.ProbabilityOf(wrong->part_a, wrong->part_b, wrong->label);
-  const double right = belief.BestRight(wrong->part_a, wrong->part_b, wrong->label);
-  Correction& correction = corrections_[name];
-  const bool sure = p >= options_.correct_probability && p - right >= options_.correct_margin && PartsStill(view);
-  if (!sure) {
+  const int times = corrections_[NameOf(*wrong)].times;
+  if (times > options_.correct_times) return;
+  if (phase_ != Phase::kWrong) speech_.Withdraw(Priority::kExplanatory);
+  ToPhase(Phase::kWrong, "a wrong connection");
+  if (!IsCorrectionDue(*wrong, view)) return;
+  const std::string key = times == options_.correct_times ? "wrong_last" : CorrectionKey(*wrong, view);
+  if (!speech_.Waits(key)) {
+    const bool listed = wrong->mistake >= 0;
+    Log("act", listed ? view.reasoner->task().mistakes[wrong->mistake].name : "unknown", "to be corrected",
+        wrong->part_a, wrong->part_b, view.reasoner->ProbabilityOf(wrong->part_a, wrong->part_b, wrong->label));
+  }
+  Offer(key, Priority::kCorrective, true, -1, wrong->part_a, wrong->part_b, view.now);
+}
+
+/// Sure for long enough, nothing in motion, not said just before; the child that asks for help need not wait.
+bool ResponsePolicy::IsCorrectionDue(const BelievedJoint& wrong, const LessonView& view) {
+  Correction& correction = corrections_[NameOf(wrong)];
+  const double p = view.reasoner->ProbabilityOf(wrong.part_a, wrong.part_b, wrong.label);
+  const double right = view.reasoner->BestRight(wrong.part_a, wrong.part_b, wrong.label);
+  if (p < options_.correct_probability || p - right < options_.correct_margin) {
     correction.wrong_since = 0;
-    return;
+    return false;
   }
   if (correction.wrong_since == 0) correction.wrong_since = view.now;
-  if (Seconds(correction.wrong_since, view.now) < options_.correct_hold) return;
-  ToPhase(Phase::kWrong, "a wrong connection");
-  const int times = corrections_said_[name];
-  if (times > options_.correct_times) return;
-  if (correction.last != 0 && Seconds(correction.last, view.now) < options_.correct_gap) return;
-  const Task& task = belief.task();
-  std::string key = "wrong";
-  if (wrong->mistake < 0 || ArePartners(task, wrong->part_a, wrong->part_b)) key = "wrong_unknown";
-  if (belief.IsTurned(*wrong)) key = "wrong_turned";
-  if (times == options_.correct_times) key = "wrong_last";
-  if (!speech_.Waits(key))
-    Log("act", wrong->mistake >= 0 ? task.mistakes[wrong->mistake].name : "unknown", "to be corrected", wrong->part_a,
-        wrong->part_b, p);
-  Offer(key, Priority::kCorrective, true, -1, wrong->part_a, wrong->part_b, view.now);
+  if (std::exchange(help_, false)) return true;
+  const bool said_lately = correction.last != 0 && Seconds(correction.last, view.now) < options_.correct_gap;
+  return Seconds(correction.wrong_since, view.now) >= options_.correct_hold && PartsStill(view) && !said_lately;
+}
+
+std::string ResponsePolicy::CorrectionKey(const BelievedJoint& wrong, const LessonView& view) const {
+  if (view.reasoner->IsTurned(wrong)) return "wrong_turned";
+  const bool partners = ArePartners(view.reasoner->task(), wrong.part_a, wrong.part_b);
+  return wrong.mistake < 0 || partners ? "wrong_unknown" : "wrong";
 }
 
 /// A correction that turns out to have been wrong: the joint was right, or was not there, already when it was said.
@@ -283,25 +290,25 @@ void ResponsePolicy::Advance(const LessonView& view) {
   if (next < 0) {
     step_ = -1;
     if (!to_praise_.empty()) return;
-    if (phase_ != Phase::kComplete) celebrated_ = false;
     ToPhase(Phase::kComplete, "every connection is made");
     if (!celebrated_) Offer("complete", Priority::kCongratulatory, true, -1, -1, -1, view.now);
     return;
   }
   if (phase_ == Phase::kComplete) ToPhase(Phase::kWait, "a connection came apart");
+  celebrated_ = false;
   if (next != step_) {
     // A step that comes back because something came apart is not announced: no nagging. The hints remind of it.
     const auto& joints = view.reasoner->joints();
-    const auto made = std::count_if(joints.begin(), joints.end(), [](const auto& j) { return j.connection >= 0; });
+    const int made =
+        static_cast<int>(std::count_if(joints.begin(), joints.end(), [](const auto& j) { return j.connection >= 0; }));
     const bool progress = made > made_before_ || phase_ == Phase::kAnnounce;
     step_ = next;
     made_before_ = made;
     if (progress && phase_ != Phase::kIntroduction) ToPhase(Phase::kAnnounce, "the next step");
   } else if (phase_ == Phase::kCorrect) {
-    ToPhase(announced_ ? Phase::kWait : Phase::kAnnounce, "on with the step");
+    ToPhase(Onwards(), "on with the step");
   }
-  if (phase_ == Phase::kIntroduction && introduced_ && !speech_.speaking(view.now))
-    ToPhase(Phase::kAnnounce, "introduced");
+  if (phase_ == Phase::kIntroduction && !speech_.speaking(view.now)) ToPhase(Phase::kAnnounce, "introduced");
   if (phase_ != Phase::kAnnounce) return;
   // First the praise for what was made, then what comes next.
   const bool praise_first = !to_praise_.empty() || speech_.Waits("praise");
@@ -348,20 +355,32 @@ void ResponsePolicy::Hint(const LessonView& view) {
 void ResponsePolicy::Step(const LessonView& view) {
   now_ = view.now;
   NoteMovement(view);
+  // A process that goes on with a lesson does not know when a correction was said: it may have been just now.
+  if (last_step_ == 0) {
+    for (auto& [name, correction] : corrections_) correction.last = view.now;
+  }
   if (begun_ && phase_ != Phase::kPaused) {
-    NoteSight(view);
-    Repair(view);
-    if (phase_ == Phase::kTrackingLost) {
-      to_praise_.clear();
+    if (introduced_) {
+      Answer(view);
     } else {
-      Praise(view);
-      Advance(view);
-      if (introduced_) Correct(view);
-      if (phase_ == Phase::kWait || phase_ == Phase::kIdle) Hedge(view);
-      Hint(view);
+      Offer(introduction_, Priority::kExplanatory, true, -1, -1, -1, view.now);
     }
   }
   last_step_ = view.now;
+}
+
+void ResponsePolicy::Answer(const LessonView& view) {
+  NoteSight(view);
+  Repair(view);
+  if (phase_ == Phase::kTrackingLost) {
+    to_praise_.clear();
+    return;
+  }
+  Praise(view);
+  Advance(view);
+  Correct(view);
+  if (phase_ == Phase::kWait || phase_ == Phase::kIdle) Hedge(view);
+  Hint(view);
 }
 
 bool ResponsePolicy::IsTrue(const Utterance& u, const LessonView& view) const {
@@ -396,23 +415,32 @@ void ResponsePolicy::Spoken(const Utterance& u, int64_t now) {
     for (auto& [name, correction] : corrections_) {
       if (std::minmax(name[1], name[2]) != std::minmax(u.part_a, u.part_b)) continue;
       correction.last = now;
-      ++corrections_said_[name];
+      ++correction.times;
     }
     if (u.key == "wrong_last") Log("act", "teacher", "the same mistake was corrected three times");
   }
   if (u.key != "hedge" && !IsIdle(u.key)) quiet_ = 0;
 }
 
-PolicyMemory ResponsePolicy::Save() const { return {phase_, idle_level_, corrections_said_, repairs_}; }
+PolicyMemory ResponsePolicy::Save() const {
+  std::map<JointName, int> times;
+  for (const auto& [name, correction] : corrections_) times[name] = correction.times;
+  return {phase_, step_, made_before_, introduced_, announced_, celebrated_, idle_level_, times, repairs_};
+}
 
-void ResponsePolicy::Restore(const PolicyMemory& memory) {
-  begun_ = introduced_ = announced_ = celebrated_ = true;
-  made_before_ = std::numeric_limits<std::ptrdiff_t>::max();  // nothing is announced again
-  paused_phase_ = Phase::kWait;
-  phase_ = memory.phase == Phase::kPaused || memory.phase == Phase::kComplete ? memory.phase : Phase::kWait;
-  idle_level_ = phase_ == Phase::kWait ? memory.idle_level : 0;
-  corrections_said_ = memory.corrections;
+void ResponsePolicy::Restore(const PolicyMemory& memory, bool greeted) {
+  introduction_ = Introduction(greeted);
+  begun_ = true;
+  step_ = memory.step;
+  made_before_ = memory.made_before;
+  introduced_ = memory.introduced;
+  announced_ = memory.announced;
+  celebrated_ = memory.celebrated;
+  for (const auto& [name, times] : memory.corrections) corrections_[name].times = times;
   repairs_ = memory.repairs;
+  const bool holds = memory.phase == Phase::kPaused || memory.phase == Phase::kComplete;
+  phase_ = holds ? memory.phase : introduced_ ? Onwards() : Phase::kIntroduction;
+  idle_level_ = phase_ == Phase::kWait ? memory.idle_level : 0;
 }
 
 }  // namespace coach

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -53,6 +52,9 @@ using JointName = std::array<int, 3>;
 /// What has to survive a restart.
 struct PolicyMemory {
   Phase phase = Phase::kIntroduction;
+  int step = -1;                                                   ///< connection asked for; -1 none
+  int made_before = 0;                                             ///< connections made when it began
+  bool introduced = false, announced = false, celebrated = false;  ///< the task, the step, the end
   int idle_level = 0;
   std::map<JointName, int> corrections;  ///< times each was said
   int repairs = 0;
@@ -86,14 +88,19 @@ class ResponsePolicy {
   std::vector<GuidanceEvent> TakeEvents() { return std::exchange(events_, {}); }
 
   PolicyMemory Save() const;
-  void Restore(const PolicyMemory& memory);
+  /// @param greeted as in Begin
+  void Restore(const PolicyMemory& memory, bool greeted);
 
  private:
   struct Correction {
-    int64_t wrong_since = 0;  ///< us, since when the conditions hold; 0 they do not
-    int64_t last = 0;         ///< us, when it was last said
+    int times = 0;            // that it was said
+    int64_t wrong_since = 0;  // us, since when it is sure; 0 it is not
+    int64_t last = 0;         // us, when it was last said
   };
   void ToPhase(Phase phase, const std::string& reason);
+  /// Where the step stands when nothing else is to be said.
+  Phase Onwards() const { return announced_ ? Phase::kWait : Phase::kAnnounce; }
+  void Answer(const LessonView& view);
   void NoteMovement(const LessonView& view);
   void NoteSight(const LessonView& view);
   void Praise(const LessonView& view);
@@ -106,6 +113,8 @@ class ResponsePolicy {
              int64_t born);
   void OfferStep(const std::string& key, Priority priority, bool solicited, const LessonView& view);
   std::string IdleKey(int level, const LessonView& view) const;
+  bool IsCorrectionDue(const BelievedJoint& wrong, const LessonView& view);
+  std::string CorrectionKey(const BelievedJoint& wrong, const LessonView& view) const;
   const BelievedJoint* WorstWrong(const LessonView& view) const;
   bool Still(const LessonView& view) const;
   bool PartsStill(const LessonView& view) const;
@@ -114,16 +123,15 @@ class ResponsePolicy {
 
   ResponseOptions options_;
   SpeechQueue& speech_;
-  Phase phase_ = Phase::kIntroduction, paused_phase_ = Phase::kWait;
+  Phase phase_ = Phase::kIntroduction;
   const char* introduction_ = "introduction";  // kind of phrase
   bool begun_ = false, introduced_ = false, announced_ = false, celebrated_ = false, help_ = false;
-  std::ptrdiff_t made_before_ = 0;  // connections made when the present step began
+  int made_before_ = 0;  // connections made when the present step began
   int step_ = -1, idle_level_ = 0, repairs_ = 0;
   int64_t now_ = 0, last_movement_ = 0, last_part_movement_ = 0, hands_since_ = 0, quiet_ = 0, last_step_ = 0,
           hidden_since_ = 0, last_lost_ = 0, doubt_since_ = 0, last_hedge_ = 0;
   std::map<std::pair<int, int>, int64_t> to_praise_;  // pair -> us when it was decided
   std::map<JointName, Correction> corrections_;
-  std::map<JointName, int> corrections_said_;
   struct Said {
     int part_a = -1, part_b = -1;
     int64_t at = 0;

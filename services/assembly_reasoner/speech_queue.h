@@ -53,6 +53,10 @@ class SpeechQueue {
   void Offer(const Utterance& utterance);
   bool Waits(const std::string& key) const;
   void Clear() { waiting_.clear(); }
+  /// Drops what waits and is of this priority at most.
+  void Withdraw(Priority most) {
+    std::erase_if(waiting_, [&](const Utterance& u) { return u.priority <= most; });
+  }
 
   /// Drops what is stale or false and chooses what is to be said now, if anything.
   std::optional<Utterance> Next(int64_t now, const IsTrue& is_true);
