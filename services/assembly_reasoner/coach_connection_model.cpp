@@ -223,31 +223,46 @@ class CoachConnectionModel : public ConnectionModel {
       };
       // Of two poses that look alike either may have been measured, either may be the nearest.
       const bool jumped = too_fast(then.xi, now.xi) && too_fast(then.xi, Difference(then.X_nominal, X_AB));
-      if (jumped) course.jumped = view.utime;
+      if (jumped) {
+        course.jumped = view.utime;
+        course.astray = true;
+      }
     }
     course.inferred = view.inferred;
     course.utime = view.utime;
     course.X_AB = X_AB;
   }
+  /// Seen to leave its joint like that, and not seen in it since.
+  bool IsAstray(const PairView& view) const { return courses_.at({view.part_a, view.part_b}).astray; }
   bool JumpedLately(const PairView& view) const {
     const Course& course = courses_.at({view.part_a, view.part_b});
     return static_cast<double>(view.utime - course.jumped) * 1e-6 < options_.jump_time;
   }
 
+  /// Whether this one measurement is what the decided joint may look like. A lasting error on its surface turns a
+  /// smaller part further.
+  bool SeenClosed(const PairView& view, double visible) const {
+    const ContactClass& contact = Classes(view.part_a, view.part_b)[view.decided];
+    const bool small = contact.arm > 0 && contact.arm < kArm;
+    const double twist = small ? options_.slack_angle * kArm / contact.arm : 0;
+    const Matrix6 single = view.evidence->covariance + Blur(view, visible) + Isotropic(0, twist);
+    return LogOdds(contact, view.evidence->X_AB, single) > 0;
+  }
+
   /// Tracking errors last, so no number of frames that show a made joint open proves it open: the measurement itself
   /// has to be one that a tracker which still has both parts can give.
-  bool Credible(const PairView& view, double visible, const PairVerdict& verdict) const {
+  bool Credible(const PairView& view, double visible, const PairVerdict& verdict) {
     const double best =
         verdict.log_odds.empty() ? 0 : *std::max_element(verdict.log_odds.begin(), verdict.log_odds.end());
     if (view.decided < 0) return !view.misfit || best > 0;
+    const bool closed = SeenClosed(view, visible);
+    if (closed) courses_.at({view.part_a, view.part_b}).astray = false;
     if (verdict.log_odds[view.decided] > 0) return true;
-    // The window may still be full of what a part looked like while it was covered.
-    const Matrix6 single = view.evidence->covariance + Blur(view, visible);
-    if (LogOdds(Classes(view.part_a, view.part_b)[view.decided], view.evidence->X_AB, single) > 0) return false;
+    if (closed) return false;  // the window may still be full of what a part looked like while it was covered
     if (view.misfit || visible < options_.break_visible) return false;
     if (JumpedLately(view)) return false;
     if (view.evidence->surface_distance > options_.clear_gap) return true;
-    return !view.pressed && Speed(view) < options_.calm_speed;
+    return !IsAstray(view) && !view.pressed && Speed(view) < options_.calm_speed;
   }
 
   /// Maximum likelihood of the moment from which on the pair was (or was no longer) in the class: the start of the
@@ -310,6 +325,7 @@ class CoachConnectionModel : public ConnectionModel {
     Pose X_AB = Pose::Identity();
     bool inferred = false;
     int64_t jumped = INT64_MIN / 2;  ///< us, when a believed joint last opened as no hand can open it
+    bool astray = false;             ///< and the pair was not seen in the joint since
   };
 
   const Task& task_;

@@ -157,6 +157,8 @@ void Add(std::vector<ContactClass>& classes, const ContactTemplate& joint, const
   if (mistake >= 0) home->mistakes.push_back(mistake);
 }
 
+double Arm(const PartType& type) { return type.mesh.vertices.empty() ? 0 : Extent(type.mesh).diameter / 2; }
+
 }  // namespace
 
 Pose MoveJoint(const ContactTemplate& joint, const std::vector<double>& q) {
@@ -189,6 +191,11 @@ ContactTable::ContactTable(const Task& task) : num_types_(task.types.size()), cl
   for (size_t i = 0; i < task.mistakes.size(); ++i) {
     const Mistake& m = task.mistakes[i];
     add(m.type_a, m.type_b, {m.X_AB, {}}, -1, static_cast<int>(i));
+  }
+  for (size_t a = 0; a < num_types_; ++a) {
+    for (size_t b = a; b < num_types_; ++b) {
+      for (ContactClass& c : classes_[a * num_types_ + b]) c.arm = std::min(Arm(task.types[a]), Arm(task.types[b]));
+    }
   }
 }
 

@@ -22,6 +22,7 @@ struct ContactClass {
   std::vector<ContactTemplate> templates;  ///< of part B in part A, one for every indistinguishable relative pose
   std::vector<int> connections;            ///< indices into Task::connections that look like this
   std::vector<int> mistakes;               ///< indices into Task::mistakes that look like this
+  double arm = 0;                          ///< m, half the diameter of the smaller part; 0 where it has no mesh
 };
 
 /// How far a relative pose is from a class.

@@ -263,88 +263,98 @@ LessonOutput Lesson::Handle(const OperatorCommand& command) {
 
 /// @returns why the command can't be obeyed; empty if it was
 std::string Lesson::Obey(const OperatorCommand& command, LessonOutput& out) {
-  const int64_t now = now_;
   const bool running = begun_ && (resting_ || policy_.phase() != Phase::kComplete);
-  const auto say = [&](const std::string& key, const std::string& text) {
-    Utterance u;
-    u.key = key;
-    u.text = text;
-    u.priority = Priority::kOperator;
-    u.solicited = true;
-    u.born = now;
-    Say(u, out);
-  };
   switch (command.kind) {
-    case OperatorKind::kChooseTask: {
-      const auto found = std::find_if(tasks_.begin(), tasks_.end(), [&](const Task& t) {
-        return t.name == command.argument || t.file.stem() == command.argument;
-      });
-      if (found == tasks_.end()) return "no task is called '" + command.argument + "'";
-      Choose(static_cast<size_t>(found - tasks_.begin()));
-      if (begun_) Begin(session_);
-      return "";
-    }
+    case OperatorKind::kChooseTask:
+      return ChooseTask(command.argument);
     case OperatorKind::kLanguage:
       if (!books_.contains(command.argument)) return "no phrases for the language '" + command.argument + "'";
       language_ = command.argument;
       return "";
     case OperatorKind::kStart:
+      if (running && !resting_) return "the lesson is running";
       if (resting_) {
         BeginNext(out);
-        return "";
+      } else {
+        Begin(command.id);
       }
-      if (running) return "the lesson is running";
-      Begin(command.id);
       return "";
     case OperatorKind::kPause:
       if (!running || policy_.phase() == Phase::kPaused) return "nothing is running";
-      policy_.Pause(now);
+      policy_.Pause(now_);
       return "";
     case OperatorKind::kResume:
       if (!begun_ || policy_.phase() != Phase::kPaused) return "the lesson is not paused";
-      policy_.Resume(now);
+      policy_.Resume(now_);
       return "";
     case OperatorKind::kSkip:
-      if (resting_) {
-        BeginNext(out);
-        return "";
-      }
-      if (!running || policy_.step() < 0) return "no step is asked for";
-      skipped_.push_back(policy_.step());
-      policy_.AnnounceAgain();
-      say("skipped", "");
-      return "";
+      return running ? Skip(out) : "no step is asked for";
     case OperatorKind::kMarkDone:
     case OperatorKind::kMarkUndone:
       return Mark(command.argument, command.kind == OperatorKind::kMarkDone, out);
     case OperatorKind::kRepeat:
       if (last_said_.text.empty()) return "nothing was said yet";
-      say("operator", last_said_.text);
+      SayAtOnce("operator", last_said_.text, out);
       return "";
     case OperatorKind::kSay:
       if (command.argument.empty() || command.argument.size() > 400) return "the text has to have 1 to 400 bytes";
-      say("operator", command.argument);
+      SayAtOnce("operator", command.argument, out);
       return "";
     case OperatorKind::kHelp:
       if (!running || resting_) return "no step is asked for";
       policy_.Help();
       return "";
-    case OperatorKind::kStop: {
-      if (running) policy_.Pause(now);
-      speech_.Clear();
-      Utterance u;
-      u.priority = Priority::kStop;
-      RobotCommand stop = Command(u);
-      stop.kind = ActKind::kStop;
-      if (speech_.current()) speech_.Ended(last_said_.id, now);
-      out.commands.push_back(stop);
+    case OperatorKind::kStop:
+      if (running) policy_.Pause(now_);
+      Stop(out);
       return "";
-    }
     case OperatorKind::kVolume:
     case OperatorKind::kResetTracker:
       return "";
   }
   return "an unknown command";
+}
+
+std::string Lesson::ChooseTask(const std::string& name) {
+  const auto found = std::find_if(tasks_.begin(), tasks_.end(),
+                                  [&](const Task& t) { return t.name == name || t.file.stem() == name; });
+  if (found == tasks_.end()) return "no task is called '" + name + "'";
+  Choose(static_cast<size_t>(found - tasks_.begin()));
+  if (begun_) Begin(session_);
+  return "";
+}
+
+/// The step, or what is left of the pause between two tasks.
+std::string Lesson::Skip(LessonOutput& out) {
+  if (resting_) {
+    BeginNext(out);
+    return "";
+  }
+  if (policy_.step() < 0) return "no step is asked for";
+  skipped_.push_back(policy_.step());
+  policy_.AnnounceAgain();
+  SayAtOnce("skipped", "", out);
+  return "";
+}
+
+void Lesson::SayAtOnce(const std::string& key, const std::string& text, LessonOutput& out) {
+  Utterance u;
+  u.key = key;
+  u.text = text;
+  u.priority = Priority::kOperator;
+  u.solicited = true;
+  u.born = now_;
+  Say(u, out);
+}
+
+void Lesson::Stop(LessonOutput& out) {
+  speech_.Clear();
+  Utterance u;
+  u.priority = Priority::kStop;
+  RobotCommand stop = Command(u);
+  stop.kind = ActKind::kStop;
+  if (speech_.current()) speech_.Ended(last_said_.id, now_);
+  out.commands.push_back(stop);
 }
 
 std::string Lesson::Mark(const std::string& name, bool made, LessonOutput& out) {

@@ -94,7 +94,11 @@ class Lesson {
   void Aim(const Utterance& utterance, RobotCommand& command) const;
   std::string Words(const Utterance& utterance, RobotCommand& command);
   std::string Obey(const OperatorCommand& command, LessonOutput& out);
+  std::string ChooseTask(const std::string& name);
+  std::string Skip(LessonOutput& out);
   std::string Mark(const std::string& name, bool made, LessonOutput& out);
+  void SayAtOnce(const std::string& key, const std::string& text, LessonOutput& out);
+  void Stop(LessonOutput& out);
   void Tell(const std::vector<ConnectionEvent>& events, LessonOutput& out);
   void Emit(GuidanceEvent event, LessonOutput& out);
   void Finish(LessonOutput& out);

@@ -370,16 +370,6 @@ class Stage {
   ScriptedLesson lesson_;
 };
 
-/// Not also the beginning of a variant.
-bool IsOnlyWrong(const Task& task, int mistake) {
-  const Mistake& m = task.mistakes[mistake];
-  for (const Connection& c : task.connections) {
-    const bool same_types = task.slots[c.slot_a].type == m.type_a && task.slots[c.slot_b].type == m.type_b;
-    if (same_types && Difference(c.X_AB, m.X_AB).norm() < 0.01) return false;
-  }
-  return true;
-}
-
 /// Parts with no joint yet, of a type.
 int FreePart(const Task& task, int type, const std::vector<bool>& used, int other, std::mt19937_64& random) {
   std::vector<int> free;
@@ -409,21 +399,50 @@ std::vector<ScriptAction> PlainScript(const Task& task, const std::vector<int>& 
   return out;
 }
 
-std::vector<ScriptAction> RandomScript(const Task& task, const ScriptOptions& options, std::mt19937_64& random) {
-  std::vector<int> order = task.variants.at(0), part_in_slot(task.slots.size(), -1), parts(task.parts.size());
-  std::shuffle(order.begin(), order.end(), random);
-  std::iota(parts.begin(), parts.end(), 0);
-  std::shuffle(parts.begin(), parts.end(), random);
-  for (const int p : parts) {
-    for (size_t s = 0; s < task.slots.size(); ++s) {
-      if (part_in_slot[s] >= 0 || task.slots[s].type != task.parts[p].type) continue;
-      part_in_slot[s] = p;
-      break;
-    }
+int64_t CountPlainScripts(const Task& task) {
+  int64_t count = 1;
+  for (size_t i = 2; i <= task.variants.at(0).size(); ++i) count *= static_cast<int64_t>(i);
+  for (size_t type = 0; type < task.types.size(); ++type) {
+    const auto of_type = [&](const auto& x) { return x.type == static_cast<int>(type); };
+    int64_t parts = std::count_if(task.parts.begin(), task.parts.end(), of_type);
+    for (auto slots = std::count_if(task.slots.begin(), task.slots.end(), of_type); slots > 0; --slots)
+      count *= parts--;
   }
+  return count;
+}
+
+std::vector<ScriptAction> PlainScriptAt(const Task& task, int64_t index) {
+  // Digits of a number with a base of its own each: which of those that are left comes next.
+  const auto take = [&](std::vector<int>& left) {
+    const auto size = static_cast<int64_t>(left.size());
+    const auto at = left.begin() + static_cast<std::ptrdiff_t>(index % size);
+    index /= size;
+    const int taken = *at;
+    left.erase(at);
+    return taken;
+  };
+  std::vector<int> left = task.variants.at(0), order, part_in_slot;
+  while (!left.empty()) order.push_back(take(left));
+  std::vector<std::vector<int>> free(task.types.size());
+  for (size_t p = 0; p < task.parts.size(); ++p) free[task.parts[p].type].push_back(static_cast<int>(p));
+  for (const Slot& slot : task.slots) part_in_slot.push_back(take(free[slot.type]));
+  return PlainScript(task, order, part_in_slot);
+}
+
+bool IsOnlyWrong(const Task& task, int mistake) {
+  const Mistake& m = task.mistakes[mistake];
+  for (const Connection& c : task.connections) {
+    const bool same_types = task.slots[c.slot_a].type == m.type_a && task.slots[c.slot_b].type == m.type_b;
+    if (same_types && Difference(c.X_AB, m.X_AB).norm() < 0.01) return false;
+  }
+  return true;
+}
+
+std::vector<ScriptAction> RandomScript(const Task& task, const ScriptOptions& options, std::mt19937_64& random) {
+  const auto number = std::uniform_int_distribution<int64_t>(0, CountPlainScripts(task) - 1)(random);
   std::vector<ScriptAction> out;
   std::vector<bool> used(task.parts.size(), false);
-  for (const ScriptAction& step : PlainScript(task, order, part_in_slot)) {
+  for (const ScriptAction& step : PlainScriptAt(task, number)) {
     if (!task.mistakes.empty() && Uniform(random, 0, 1) < options.mistakes) {
       const int m = std::uniform_int_distribution<int>(0, static_cast<int>(task.mistakes.size()) - 1)(random);
       const int a = IsOnlyWrong(task, m) ? FreePart(task, task.mistakes[m].type_a, used, -1, random) : -1;

@@ -65,4 +65,12 @@ std::vector<ScriptAction> RandomScript(const Task& task, const ScriptOptions& op
 std::vector<ScriptAction> PlainScript(const Task& task, const std::vector<int>& order,
                                       const std::vector<int>& part_in_slot);
 
+/// How many plain scripts there are: orders of the first variant's connections times assignments of parts to slots.
+int64_t CountPlainScripts(const Task& task);
+/// The `index`-th of them.
+std::vector<ScriptAction> PlainScriptAt(const Task& task, int64_t index);
+
+/// Not also the beginning of a variant.
+bool IsOnlyWrong(const Task& task, int mistake);
+
 }  // namespace coach

@@ -5,6 +5,7 @@
 #include "common/assembly/task_file.h"
 #include "services/assembly_reasoner/lesson_configuration.h"
 #include "tools/evaluate_reasoner/pose_script.h"
+#include "tools/evaluate_reasoner/recorded_poses.h"
 
 namespace {
 
@@ -73,19 +74,27 @@ class Transcript {
       task_ = &tasks_[i];
       const ScriptedLesson script = PlayScript(*task_, HesitantChild(*task_), {}, kRate, 3);
       if (start_ == 0) start_ = now_ = script.frames.front().utime;
-      for (const PartPoses& poses : script.frames) Step(poses);
+      for (const PartPoses& poses : script.frames) StepNext(poses);
       for (int k = 0; i + 1 < tasks_.size() && lesson_.task().name == task_->name && k < kMostRest * kRate; ++k)
-        Step(script.frames.back());
+        StepNext(script.frames.back());
     }
+  }
+  /// What the tracker said of a recorded session of the first task.
+  void Print(const std::vector<PartPoses>& recording) {
+    start_ = recording.front().utime;
+    for (const PartPoses& poses : recording) Step(poses);
   }
 
  private:
   static constexpr int kRate = 15;       // Hz
   static constexpr int kMostRest = 120;  // s
 
-  void Step(PartPoses poses) {
-    now_ += 1000000 / kRate;
-    poses.utime = now_;
+  void StepNext(PartPoses poses) {
+    poses.utime = now_ + 1000000 / kRate;
+    Step(poses);
+  }
+  void Step(const PartPoses& poses) {
+    now_ = poses.utime;
     if (robot_id_ != 0 && now_ >= robot_until_) {
       RobotStatus status;
       status.session = lesson_.session();
@@ -121,13 +130,13 @@ class Transcript {
   }
 
   const std::vector<Task>& tasks_;
-  const Task* task_ = nullptr;
+  const Task* task_ = tasks_.data();
   Lesson lesson_;
   int64_t start_ = 0, now_ = 0, robot_until_ = 0, robot_id_ = 0;  // us
 };
 
 void Print(const std::vector<Task>& tasks, const std::map<std::string, PhraseBook>& books, const std::string& language,
-           bool group) {
+           bool group, const std::vector<PartPoses>& recording = {}) {
   LessonOptions options;
   options.language = language;
   options.group = group;
@@ -137,7 +146,8 @@ void Print(const std::vector<Task>& tasks, const std::map<std::string, PhraseBoo
   for (const Task& task : tasks) names += (names.empty() ? "" : ", then ") + task.name;
   std::printf("\n## %s, %s, %s\n\n| time | what happens | the robot says | and does |\n|---|---|---|---|\n",
               names.c_str(), language.c_str(), group ? "a group" : "one child");
-  Transcript(tasks, books, options).Print();
+  Transcript transcript(tasks, books, options);
+  recording.empty() ? transcript.Print() : transcript.Print(recording);
 }
 
 }  // namespace
@@ -145,14 +155,21 @@ void Print(const std::vector<Task>& tasks, const std::map<std::string, PhraseBoo
 int main(int argc, char** argv) {
   CLI::App app("Prints simulated lessons in every language");
   std::vector<std::string> tasks;
-  std::string phrases;
+  std::string phrases, recording;
   bool in_a_row = false;
   app.add_option("tasks", tasks, "task files")->required()->check(CLI::ExistingFile);
   app.add_option("--phrases", phrases, "folder of phrase files instead of the shipped ones");
+  app.add_option("--recording", recording, "recorded PART_POSES of the first task instead of a simulated child")
+      ->check(CLI::ExistingFile);
   app.add_flag("--in-a-row", in_a_row, "one lesson of all the tasks, after the lessons of one each");
   CLI11_PARSE(app, argc, argv);
   try {
     const auto books = LoadPhraseBooks(phrases.empty() ? ShippedPhrases() : std::filesystem::path(phrases));
+    if (!recording.empty()) {
+      const std::vector<PartPoses> poses = ReadPartPoses(recording);
+      for (const auto& [language, book] : books) Print({LoadTask(tasks.front())}, books, language, false, poses);
+      return 0;
+    }
     std::printf(
         "# Simulated lessons\n\nMade by `coach-lesson-transcript`. The child thinks for long, joins two pieces "
         "that do not belong together, misses narrowly, and ends well.\n");

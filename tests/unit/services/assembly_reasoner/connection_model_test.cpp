@@ -36,8 +36,9 @@ TEST(PaperConnectionProbability, WhatItCanNotSee) {
 
 class CoachModel : public testing::Test {
  protected:
-  CoachModel()
-      : task_(LoadTask(std::string(COACH_SOURCE_DIR) + "/deploy/tasks/rectangle_long_medium.yaml")),
+  explicit CoachModel(const std::string& task = "rectangle_long_medium", int connection = 0)
+      : task_(LoadTask(std::string(COACH_SOURCE_DIR) + "/deploy/tasks/" + task + ".yaml")),
+        X_joint_(task_.connections[connection].X_AB),
         contacts_(task_),
         model_(MakeCoachConnectionModel(task_, contacts_)) {}
 
@@ -66,13 +67,14 @@ class CoachModel : public testing::Test {
     return verdict;
   }
   Pose Corner(double gap_x = 0, double angle = 0) const {
-    Pose X = task_.connections[0].X_AB;
+    Pose X = X_joint_;
     X.translation().x() += gap_x;
     X.linear() = ExpRotation({0, 0, angle}) * X.linear();
     return X;
   }
 
   Task task_;
+  Pose X_joint_;
   ContactTable contacts_;
   std::unique_ptr<ConnectionModel> model_;
   int64_t utime_ = 0;
@@ -116,8 +118,9 @@ struct Look {
 
 class BreakOfAMadeJoint : public CoachModel {
  protected:
+  using CoachModel::CoachModel;
   /// Judges one frame, a 30th of a second later, of the joint opened by `open` m to the side.
-  PairVerdict Frame(double open, const Look& look = {}, int decided = 0) {
+  PairVerdict Frame(double open, const Look& look = {}, int decided = 0, double turn = 0) {
     utime_ += 33333;
     std::normal_distribution<double> noise(0, 0.0003);
     PartEstimate a, b;
@@ -127,7 +130,7 @@ class BreakOfAMadeJoint : public CoachModel {
     a.X_TP.translation().z() = noise(random_);
     PairEvidence pair;
     pair.part_b = 2;
-    pair.X_AB = Corner(open + noise(random_));
+    pair.X_AB = Corner(open + noise(random_), turn);
     pair.covariance.setZero();
     pair.covariance.diagonal() << Vector3::Constant(1e-6), Vector3::Constant(1e-4);
     pair.surface_distance = look.gap;
@@ -183,6 +186,40 @@ TEST_F(BreakOfAMadeJoint, AJumpIsTheTrackersAndOnlyWhatLastsIsBelieved) {
   }
   EXPECT_TRUE(believed);
   EXPECT_NEAR(static_cast<double>(when - jumped) * 1e-6, options.jump_time, 0.1);
+}
+
+TEST_F(BreakOfAMadeJoint, AfterAJumpOnlyAirBetweenThePartsOrAReturnProvesAnything) {
+  Made();
+  PairVerdict verdict;
+  for (int i = 0; i < 150; ++i) {
+    verdict = Frame(0, {}, 0, std::numbers::pi);  // turned over in place, and so it stays
+    EXPECT_FALSE(verdict.has_evidence && verdict.log_odds[0] < 0);
+  }
+  for (int i = 0; i < 90; ++i) verdict = Frame(0.060, {.gap = 0.02});
+  EXPECT_TRUE(verdict.has_evidence && verdict.log_odds[0] < -2);
+  Made();
+  for (int i = 0; i < 60; ++i) Frame(0);
+  EXPECT_TRUE(Opens({})) << "seen in the joint again";
+}
+
+class BreakOfAWheel : public BreakOfAMadeJoint {
+ protected:
+  BreakOfAWheel() : BreakOfAMadeJoint("car", 1) {}
+};
+
+TEST_F(BreakOfAMadeJoint, ABrickThatIsTurnedIsSeen) {
+  Made();
+  PairVerdict verdict;
+  for (int i = 1; i <= 40; ++i) verdict = Frame(0.002, {}, 0, 9 * kDegree * std::min(1.0, i / 15.0));
+  EXPECT_TRUE(verdict.has_evidence && verdict.log_odds[0] < -2);
+}
+
+TEST_F(BreakOfAWheel, ASmallPartIsTurnedByTheTrackersErrors) {
+  Made();
+  PairVerdict verdict;
+  for (int i = 1; i <= 40; ++i) verdict = Frame(0.002, {}, 0, 9 * kDegree * std::min(1.0, i / 15.0));
+  EXPECT_FALSE(verdict.has_evidence && verdict.log_odds[0] < 0);
+  EXPECT_TRUE(Opens({}));
 }
 
 TEST_F(BreakOfAMadeJoint, AJumpAwayAndBackLeavesNoTrace) {
