@@ -430,12 +430,12 @@ std::vector<ScriptAction> PlainScriptAt(const Task& task, int64_t index) {
 }
 
 bool IsOnlyWrong(const Task& task, int mistake) {
-  const Mistake& m = task.mistakes[mistake];
-  for (const Connection& c : task.connections) {
-    const bool same_types = task.slots[c.slot_a].type == m.type_a && task.slots[c.slot_b].type == m.type_b;
-    if (same_types && Difference(c.X_AB, m.X_AB).norm() < 0.01) return false;
-  }
-  return true;
+  const auto [low, high] = std::minmax(task.mistakes[mistake].type_a, task.mistakes[mistake].type_b);
+  const ContactTable contacts(task);
+  const auto& classes = contacts.Classes(low, high);
+  return std::any_of(classes.begin(), classes.end(), [&](const ContactClass& c) {
+    return c.connections.empty() && std::find(c.mistakes.begin(), c.mistakes.end(), mistake) != c.mistakes.end();
+  });
 }
 
 std::vector<ScriptAction> RandomScript(const Task& task, const ScriptOptions& options, std::mt19937_64& random) {
