@@ -41,7 +41,7 @@ std::string Slurp(const std::filesystem::path& file) {
 }
 
 std::string Name(const YamlNode& node) {
-  const auto name = node.As<std::string>();
+  auto name = node.As<std::string>();
   const bool good = !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
@@ -212,7 +212,7 @@ Pose ReadPose(const YamlNode& node, double unit) {
 }
 
 std::vector<YamlNode> Two(const YamlNode& list) {
-  const auto items = list.Items();
+  auto items = list.Items();
   if (items.size() != 2) list.Fail("two names");
   return items;
 }

@@ -12,6 +12,7 @@ namespace {
 template <class Message, class Struct>
 std::vector<Message> ToMessages(const std::vector<Struct>& items) {
   std::vector<Message> out;
+  out.reserve(items.size());
   for (const Struct& item : items) out.push_back(ToMessage(item));
   return out;
 }
@@ -134,6 +135,7 @@ static foreign_blob_t ToMessage(const ForeignBlob& blob) {
 
 static std::vector<ForeignBlob> BlobsFromMessage(const std::vector<foreign_blob_t>& messages) {
   std::vector<ForeignBlob> blobs;
+  blobs.reserve(messages.size());
   for (const foreign_blob_t& m : messages)
     blobs.push_back({FiniteVector(m.centre, "foreign.centre"), InRange(m.radius, 0, 10, "foreign.radius"),
                      FiniteVector(m.velocity, "foreign.velocity")});
