@@ -19,11 +19,6 @@ std::string Count(int k, int n) { return std::to_string(k) + "/" + std::to_strin
 
 std::string Spread(const Statistics& s) { return s.n == 0 ? "-" : Text(s.median) + " / " + Text(s.p95); }
 
-int Recovered(const PoseScores& s) {
-  return static_cast<int>(std::count_if(s.recoveries.begin(), s.recoveries.end(),
-                                        [](const Recovery& r) { return r.after && *r.after <= 0.2 + 1e-9; }));
-}
-
 using Cell = std::function<std::string(const Evaluation&)>;
 
 std::string Table(const std::vector<std::pair<std::string, Cell>>& rows, const std::vector<Evaluation>& results) {

@@ -253,6 +253,11 @@ PoseErrors ComputeErrors(const SceneTruth& truth, const Estimates& e) {
   return errors;
 }
 
+int Recovered(const PoseScores& s) {
+  return static_cast<int>(std::count_if(s.recoveries.begin(), s.recoveries.end(),
+                                        [](const Recovery& r) { return r.after && *r.after <= 0.2 + 1e-9; }));
+}
+
 std::vector<double> DistanceErrors(const SceneTruth& truth, const Estimates& e, const PoseErrors& errors) {
   std::vector<double> distances;
   if (truth.parts() < 2) return distances;

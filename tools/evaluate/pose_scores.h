@@ -61,6 +61,9 @@ struct PoseScores {
 };
 PoseScores ScorePoses(const SceneTruth& truth, const Estimates& estimates, const PoseErrors& errors);
 
+/// How many of the recoveries took 0.2 s at most.
+int Recovered(const PoseScores& scores);
+
 /// |distance between parts 0 and 1 - the true one| by frame, mm; kNoEstimate where one has no estimate.
 std::vector<double> DistanceErrors(const SceneTruth& truth, const Estimates& estimates, const PoseErrors& errors);
 

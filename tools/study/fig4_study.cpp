@@ -1,6 +1,5 @@
 #include "tools/study/fig4_study.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -26,11 +25,6 @@ std::vector<double> Doubles(const Json& list) {
   std::vector<double> values;
   for (const Json& x : list) values.push_back(x.is_null() ? std::numeric_limits<double>::infinity() : x.get<double>());
   return values;
-}
-
-int Recovered(const PoseScores& s) {
-  return static_cast<int>(std::count_if(s.recoveries.begin(), s.recoveries.end(),
-                                        [](const Recovery& r) { return r.after && *r.after <= 0.2 + 1e-9; }));
 }
 
 }  // namespace
