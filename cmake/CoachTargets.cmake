@@ -16,13 +16,14 @@ function(coach_library name)
   target_link_libraries(${name} PUBLIC ${ARG_DEPS} PRIVATE coach_warnings ${ARG_PRIVATE_DEPS})
 endfunction()
 
-# coach_program(<name> SOURCES ... DEPS ...)
+# coach_program(<name> SOURCES ... DEPS ...): installed, with a man page from its --help.
 function(coach_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE coach_warnings ${ARG_DEPS})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${name} RUNTIME)
+  set_property(GLOBAL APPEND PROPERTY COACH_PROGRAMS ${name})
 endfunction()
 
 # coach_test(<folder/name> SOURCES ... DEPS ... [TIMEOUT s]): one gtest executable, one ctest entry.

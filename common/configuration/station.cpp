@@ -27,7 +27,7 @@ std::string HostAsName() {
 }
 
 std::string UrlOf(const YamlNode& bus, const std::string& key, const std::string& otherwise) {
-  const std::string url = bus.Get<std::string>(key, otherwise);
+  std::string url = bus.Get<std::string>(key, otherwise);
   if (url.find("://") == std::string::npos) bus.At(key).Fail("an LCM URL such as " + otherwise);
   return url;
 }

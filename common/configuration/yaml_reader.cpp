@@ -90,7 +90,7 @@ template <class T>
 T YamlNode::As() const {
   if (!impl_->node.IsScalar()) Fail(Expected<T>());
   try {
-    const T value = impl_->node.as<T>();
+    T value = impl_->node.as<T>();
     if (IsGood(value)) return value;
   } catch (const YAML::Exception&) {
   }
@@ -135,7 +135,7 @@ double YamlNode::GetInRange(const std::string& key, double otherwise, double low
 
 std::string YamlNode::GetChoice(const std::string& key, const std::string& otherwise,
                                 const std::vector<std::string>& choices) const {
-  const std::string value = Get<std::string>(key, otherwise);
+  std::string value = Get<std::string>(key, otherwise);
   if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
     std::string expected;
     for (const std::string& choice : choices) expected += (expected.empty() ? "" : ", ") + choice;
