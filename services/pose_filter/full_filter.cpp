@@ -185,26 +185,33 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
   // Between likely poses the expected one wins: another may be the empty place of an equal part, or one of the turns
   // that look almost the same when little is seen. The likelihood counts neighbouring pixels as witnesses of their own,
   // so the prior is measured in shares of it.
-  const Pose expected = X_CT * (carried ? *carried : predicted);
-  const double reach = carried ? options_.link_reach : 0.03 + 0.5 * track.velocity.head<3>().norm() * dt;
-  const double turn = carried ? options_.link_turn : track.moving ? 0.7 : 0.4;
+  // A part that lay still before it was covered still does, as far as what is left of it can tell.
+  const bool resting = !carried && track.X_TP_rest && best.visible_fraction() < options_.track.rest_visible;
+  const Pose expected = X_CT * (carried ? *carried : resting ? *track.X_TP_rest : predicted);
+  const double reach = carried   ? options_.link_reach
+                       : resting ? options_.rest_reach
+                                 : 0.03 + 0.5 * track.velocity.head<3>().norm() * dt;
+  const double turn = carried ? options_.link_turn : resting ? options_.rest_turn : track.moving ? 0.7 : 0.4;
   const auto posterior = [&](const PoseCandidate& c) {
-    return c.score.log_likelihood - JumpCost(expected, reach, turn, c) - CollisionCost(part, c);
+    const double no_edge = options_.outline_cost * (1 - c.outline_support()) * std::abs(c.score.log_likelihood);
+    return c.score.log_likelihood - no_edge - JumpCost(expected, reach, turn, c) - CollisionCost(part, c);
   };
-  const auto consider = [&](const Pose& X_CP) {
-    const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit, X_CP, options_.refinement, scratch_);
+  const auto consider = [&](const Pose& X_CP, const RefinementOptions& refinement) {
+    const PoseCandidate c = Polish(shape.model, observation, owners_, part, bit, X_CP, refinement, scratch_);
     if (posterior(c) > posterior(best)) best = c;
   };
   const Pose first = best.X_CP;
-  if (const auto particle = BestParticle(part, observation, predicted, track.X_TP, best.X_CP, dt)) consider(*particle);
+  if (const auto particle = BestParticle(part, observation, predicted, track.X_TP, best.X_CP, dt))
+    consider(*particle, options_.refinement);
   const Pose rest = X_CT * track.X_TP;
-  if (followed_[part]) consider(X_CT * coasted);
-  if (track.moving && StepLength(Difference(first, rest), 0.05) > 0.004) consider(rest);
-  if (carried) {
+  if (followed_[part]) consider(X_CT * coasted, options_.refinement);
+  if (track.moving && StepLength(Difference(first, rest), 0.05) > 0.004) consider(rest, options_.refinement);
+  if (carried || resting) {
     const Vector6 away = Difference(best.X_CP, expected);
-    if (StepLength(away, 0.05) > 0.004) consider(expected);
-    DropEmptyLinks(part, observation);
+    if (StepLength(away, 0.05) > 0.004) consider(expected, resting ? options_.rest_refinement : options_.refinement);
   }
+  if (carried) DropEmptyLinks(part, observation);
+  if (resting && StepLength(Difference(best.X_CP, expected), 0.05) > options_.rest_left) track.X_TP_rest.reset();
   TestRivals(part, observation, dt, carried ? &expected : nullptr, best);
   const double in_image = InImageFraction(shape.model, observation.camera, best.X_CP);
   const double open = best.full_samples > 0 ? best.score.open() / best.full_samples : 0;
@@ -214,8 +221,7 @@ void FullFilter::UpdateTrack(int part, const Observation& observation, double dt
     Coast(PartStatus::kOutOfView, dt, options_.track, track);
   } else if (open < options_.track.least_open) {
     Coast(PartStatus::kOccluded, dt, options_.track, track);
-  } else if (best.score.agreement() >= options_.track.least_agreement &&
-             (track.moving || InReach(camera_.X_TC() * best.X_CP.translation()))) {
+  } else if (Believable(best, options_.track) && (track.moving || InReach(camera_.X_TC() * best.X_CP.translation()))) {
     Fuse(best, camera_.X_TC(), dt, options_.track, track);
   } else {
     const int bad = track.bad + 1;
@@ -259,7 +265,10 @@ double FullFilter::CollisionCost(int part, const PoseCandidate& candidate) const
 }
 
 void FullFilter::RepairIdentities(const Observation& observation) {
-  for (Track& track : tracks_) track.exchanged_with = -1;
+  for (Track& track : tracks_) {
+    track.exchanged_with = track.ambiguous_with = -1;
+    track.ambiguous_probability = 0;
+  }
   for (size_t i = 0; i < tracks_.size(); ++i) {
     for (size_t j = i + 1; j < tracks_.size(); ++j) {
       Track &a = tracks_[i], &b = tracks_[j];
@@ -269,22 +278,34 @@ void FullFilter::RepairIdentities(const Observation& observation) {
       const auto way = [](const Track& from, const Track& to) {
         return (from.anchor.translation() - to.X_TP.translation()).norm();
       };
-      if (way(a, b) + way(b, a) + options_.exchange_margin > way(a, a) + way(b, b)) continue;
-      std::swap(a, b);
-      std::swap(a.anchor, b.anchor);
-      for (Track* track : {&a, &b}) {
-        const SymmetryGroup& symmetries = ShapeOf(static_cast<int>(i)).model.symmetries;
-        track->X_TP = NearestEquivalent(symmetries, track->X_TP, track->anchor);
-        track->X_TP_free = NearestEquivalent(symmetries, track->X_TP_free, track->anchor);
+      const double kept = way(a, a) + way(b, b), exchanged = way(a, b) + way(b, a);
+      if (exchanged + options_.exchange_margin <= kept) Exchange(static_cast<int>(i), static_cast<int>(j), observation);
+      // Half the margin as the unit of a logistic law: by how much a hand may have gone farther than it had to.
+      const double probability = 1 / (1 + std::exp(2 * std::abs(kept - exchanged) / options_.exchange_margin));
+      for (const auto& [track, other] : {std::pair(&a, j), std::pair(&b, i)}) {
+        if (probability <= std::max(0.02, track->ambiguous_probability)) continue;
+        track->ambiguous_probability = probability;
+        track->ambiguous_with = static_cast<int>(other);
       }
-      a.exchanged_with = static_cast<int>(j);
-      b.exchanged_with = static_cast<int>(i);
-      owners_.Remove(static_cast<int>(i), tiles_[i]);
-      owners_.Remove(static_cast<int>(j), tiles_[j]);
-      Place(static_cast<int>(i), observation);
-      Place(static_cast<int>(j), observation);
     }
   }
+}
+
+void FullFilter::Exchange(int i, int j, const Observation& observation) {
+  Track &a = tracks_[i], &b = tracks_[j];
+  std::swap(a, b);
+  std::swap(a.anchor, b.anchor);
+  for (Track* track : {&a, &b}) {
+    const SymmetryGroup& symmetries = ShapeOf(i).model.symmetries;
+    track->X_TP = NearestEquivalent(symmetries, track->X_TP, track->anchor);
+    track->X_TP_free = NearestEquivalent(symmetries, track->X_TP_free, track->anchor);
+  }
+  a.exchanged_with = j;
+  b.exchanged_with = i;
+  owners_.Remove(i, tiles_[i]);
+  owners_.Remove(j, tiles_[j]);
+  Place(i, observation);
+  Place(j, observation);
 }
 
 void FullFilter::TestRivals(int part, const Observation& observation, double dt, const Pose* linked_X_CP,
@@ -298,6 +319,7 @@ void FullFilter::TestRivals(int part, const Observation& observation, double dt,
   const size_t n = shape.model.near_symmetries.size();
   track.rival.resize(n, 0.0f);
   track.seen_for = track.missing() ? 0 : track.seen_for + dt;
+  if (track.missing()) std::fill(track.rival.begin(), track.rival.end(), 0.0f);
   if (n == 0 || !options_.test_rivals || best.score.open() < options_.rival_open * best.full_samples ||
       best.score.open() < 30)
     return;
@@ -312,10 +334,10 @@ void FullFilter::TestRivals(int part, const Observation& observation, double dt,
     // Small but lasting differences decide: pixels are no independent witnesses, frames nearly are.
     const double gain = value(c) - value(best);
     const double unit = std::max(60.0, options_.rival_gain * std::abs(best.score.log_likelihood));
-    track.rival[which] = static_cast<float>(std::clamp(track.rival[which] + gain / unit - 0.5, 0.0, 3.0));
+    track.rival[which] = static_cast<float>(std::clamp(track.rival[which] + gain / unit - 0.5, -4.0, 3.0));
     if (track.rival[which] < 1.5f) continue;
     best = c;
-    std::fill(track.rival.begin(), track.rival.end(), 0.0f);
+    std::fill(track.rival.begin(), track.rival.end(), -1.0f);
     track.seen_for = 0;
     return;
   }

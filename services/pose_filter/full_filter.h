@@ -30,12 +30,16 @@ struct FullFilterOptions {
   double link_overlap = 0.012;    ///< m from the joint (a radian counting as 5 cm), up to which overlap is allowed
   double link_reach = 0.015;      ///< m, from where a partner expects a part, that costs as much as a jump
   double link_turn = 0.2;         ///< rad
+  double rest_reach = 0.01;       ///< m, the same from where a covered part lay still
+  double rest_turn = 0.15;        ///< rad
+  double rest_left = 0.02;        ///< m (a radian counting as 5 cm), from which on it has left that place
   /// Of the likelihood, for a pose one reach (3 cm and more) or turn (0.4 rad) from the expected one; grows with the
   /// square, at most three times.
   double jump_cost = 0.03;
   double exchange_margin = 0.04;   ///< m, by which two equal parts must come a shorter way with their names exchanged
   double rival_open = 0.35;        ///< share of the silhouette that must be open for a near symmetry to be tried
   double rival_gain = 0.015;       ///< of the likelihood, by which it must be better for several frames
+  double outline_cost = 0.3;       ///< of the likelihood, for a pose at whose outline the image has no edge
   double collision_cost = 0.2;     ///< of the likelihood, for a pose that lies in another part
   double allowed_overlap = 0.004;  ///< m, measured poses of touching parts overlap
   double full_overlap = 0.05;      ///< share of the surface inside the other part that costs all of it
@@ -46,7 +50,9 @@ struct FullFilterOptions {
       200;  ///< nats by which a part found elsewhere must explain the image better than where it was believed
   int relocation_period = 5;         ///< frames between two looks at unexplained colour while all parts are seen
   double relocation_ratio = 1.3;     ///< by which a seen part must explain the image better elsewhere
-  double relocation_visible = 0.6;   ///< visible share from which on a part is left where it is
+  double relocation_visible = 0.6;   ///< visible share from which on a part is left where it is; also where at least
+  double relocation_small = 0.2;     ///< so much of it is seen and
+  double relocation_sure = 0.8;      ///< the image agrees so well
   int surface_search_period = 5;     ///< frames between two searches of things on the table; 0: none
   double surface_own_colour = 0.35;  ///< share of a thing's pixels that must be in the part's class,
   double surface_good_colour = 0.7;  ///< from which on the part is followed by colour too
@@ -55,6 +61,7 @@ struct FullFilterOptions {
   PoseSearchOptions search;
   PoseSearchOptions surface_search{.refined = 16, .polished = 5, .least_outline = 0.35};
   RefinementOptions refinement;
+  RefinementOptions rest_refinement{.prior_position = 0.001, .prior_rotation = 0.01};
   BodySearchOptions body;
   CameraMotionOptions camera;
   TableOptions table;
@@ -93,8 +100,10 @@ class FullFilter final : public PoseFilter {
   void LocateCamera(const Observation& observation);
   void BuildOwners(const Observation& observation, double dt);
   /// Of two equal parts of which one jumped: gives the names so that both came the shorter way from where they were
-  /// beyond doubt.
+  /// beyond doubt; notes how sure that is.
   void RepairIdentities(const Observation& observation);
+  /// Two equal parts swap what is believed of them; each takes the pose nearest to where it was beyond doubt.
+  void Exchange(int i, int j, const Observation& observation);
   /// Tries poses that look almost the same as `best` and takes one over if it has been the better one for some frames.
   /// @param linked_X_CP where a linked partner expects the part, or null
   void TestRivals(int part, const Observation& observation, double dt, const Pose* linked_X_CP, PoseCandidate& best);

@@ -170,15 +170,17 @@ void FullFilter::Relocate(const std::vector<Blob>& blobs, const Observation& obs
   int chosen = -1;
   double least = options_.relocation_visible;
   for (size_t k = 0; k < tracks_.size(); ++k) {
-    if (class_of_part_[k] != blob.colour_class || tracks_[k].visible_fraction >= least) continue;
-    least = tracks_[k].visible_fraction;
+    const Track& track = tracks_[k];
+    if (class_of_part_[k] != blob.colour_class || track.visible_fraction >= least) continue;
+    if (track.visible_fraction >= options_.relocation_small && track.confidence >= options_.relocation_sure) continue;
+    least = track.visible_fraction;
     chosen = static_cast<int>(k);
   }
   if (chosen < 0) return;
   const Pose former = camera_.X_TC().inverse() * tracks_[chosen].X_TP;
   const auto found = SearchPose(ShapeOf(chosen).model, ShapeOf(chosen).search_points, observation, owners_, chosen,
                                 bit_of_part_[chosen], blob, camera_.X_TC(), options_.search, &former, scratch_);
-  if (!found || !Plausible(chosen, *found, false)) return;
+  if (!found || !Plausible(chosen, *found, true)) return;
   const double least_likelihood = options_.relocation_ratio * tracks_[chosen].log_likelihood + options_.relocation_gain;
   if (found->score.log_likelihood < least_likelihood) return;
   Restart(*found, camera_.X_TC(), tracks_[chosen]);

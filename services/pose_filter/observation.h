@@ -52,6 +52,9 @@ struct Observation {
   float Depth(int x, int y) const {
     return depth ? static_cast<float>(depth[static_cast<size_t>(y) * camera.width + x] * metres_per_unit) : 0.0f;
   }
+  /// Depth that a pixel inside the image without a reading most likely has, m: that of the nearest reading to its left
+  /// or right, whichever has more of its colour. 0: unknown.
+  float LikelyDepth(int x, int y) const;
   /// Brightness at a pixel inside the image, 0..255; only with a colour image.
   float Grey(int x, int y) const {
     const uint8_t* p = bgr + 3 * (static_cast<size_t>(y) * camera.width + x);

@@ -15,12 +15,8 @@ Matrix6 Diagonal(double position, double rotation) {
 
 double Confidence(const Score& score) { return std::clamp(score.agreement(), 0.0, 1.0); }
 
-double VisibleFraction(const PoseCandidate& c) {
-  return c.full_samples > 0 ? std::clamp((c.score.inlier + c.score.no_reading) / c.full_samples, 0.0, 1.0) : 0.0;
-}
-
 void Describe(const PoseCandidate& candidate, Track& track) {
-  track.visible_fraction = VisibleFraction(candidate);
+  track.visible_fraction = candidate.visible_fraction();
   track.confidence = Confidence(candidate.score);
   track.pixels = candidate.pixels;
   track.log_likelihood = candidate.score.log_likelihood;
@@ -41,11 +37,17 @@ Pose PredictPose(const Track& track, double dt) {
   return Perturb(track.X_TP, track.velocity * std::min(dt, kLongestPrediction));
 }
 
+bool Believable(const PoseCandidate& candidate, const TrackOptions& options) {
+  return candidate.score.agreement() >= options.least_agreement &&
+         (candidate.evidence.contour_judged < options.least_judged ||
+          candidate.outline_support() >= options.least_outline);
+}
+
 void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const TrackOptions& options, Track& track) {
   const Pose measured = X_TC * candidate.X_CP;
   const Matrix6 information = RotateCovariance(X_TC.linear(), candidate.evidence.information);
   // A small piece seen past a hand is more often another's edge than the noise of its pixels says.
-  const double visible = VisibleFraction(candidate);
+  const double visible = candidate.visible_fraction();
   const double caution = 1 + options.small_piece * options.small_piece / (visible * visible + 1e-3);
   const Matrix6 noise = caution * (information + Matrix6::Identity() * 1e-3).inverse();
   const Pose before = track.X_TP;
@@ -74,6 +76,8 @@ void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const Tra
   track.carried = false;
   track.bad = 0;
   Describe(candidate, track);
+  if (track.visible_fraction >= options.rest_visible)
+    track.X_TP_rest = track.moving_for > options.rest_time ? std::optional(track.X_TP) : std::nullopt;
 }
 
 bool Constrain(const Pose& X_TP, const Matrix6& covariance, Track& track) {
@@ -141,6 +145,8 @@ PartEstimate Publish(const Track& track, const TrackOptions& options) {
       track.bad > 0 || (track.calm_for < options.calm_time && track.confidence < options.hasty_confidence);
   out.status = track.status == PartStatus::kTracked && doubtful ? PartStatus::kOccluded : track.status;
   out.confidence = track.confidence;
+  out.ambiguous_with = track.ambiguous_with;
+  out.ambiguous_probability = track.ambiguous_probability;
   out.identity_exchange = track.exchanged_with;
   return out;
 }

@@ -1,6 +1,8 @@
 // What the filter believes of one part, and how a measurement or its absence changes it.
 #pragma once
 
+#include <optional>
+
 #include "common/assembly/part_poses.h"
 #include "services/pose_filter/pose_search.h"
 
@@ -20,12 +22,16 @@ struct TrackOptions {
   double small_piece = 0.17;       ///< visible share at which the variance of a fit is doubled
   double least_open = 0.12;        ///< share of the silhouette that must be open for an update
   double least_agreement = 0.45;   ///< Score::agreement below which the pose is not believed
+  double least_outline = 0.35;     ///< PoseCandidate::outline_support below which it is a piece of something larger,
+  int least_judged = 20;           ///< if so many outline points are open to judgement
   double jump = 0.05;              ///< m in one frame: the part may have been taken for another
   double settle_time = 1.0;        ///< s without a jump after which an identity is beyond doubt
   int bad_frames = 2;              ///< in a row until the part is lost
   double hasty = 0.02;             ///< m in one frame: farther than a refinement follows surely
   double calm_time = 0.2;          ///< s without that, after which a fit is trusted again
   double hasty_confidence = 0.75;  ///< of a fit that is trusted all the same
+  double rest_visible = 0.6;       ///< visible share of a part that is seen to lie still
+  double rest_time = 0.3;          ///< s without a move after which it does
 };
 
 struct Track {
@@ -39,7 +45,7 @@ struct Track {
   double confidence = 0;
   int pixels = 0;             ///< px of the last fit
   double log_likelihood = 0;  ///< nats, of the last fit
-  std::vector<float> rival;   ///< how long and how much each near symmetry has been better; 0: never
+  std::vector<float> rival;   ///< how long and how much each near symmetry has been better, since it was last hidden
   int next_rival = 0;
   double seen_for = 0;    ///< s without a break
   bool by_depth = false;  ///< its colour is not to be relied on: found and followed by depth alone
@@ -51,7 +57,10 @@ struct Track {
   Pose anchor = Pose::Identity();  ///< table frame; where the part was when its identity was last beyond doubt
   double calm_for = 1;             ///< s since it last moved far between two frames
   double settled_for = 0;          ///< s since it last jumped, was lost or was hidden
-  int exchanged_with = -1;         ///< equal part it exchanged its identity with in this frame
+  std::optional<Pose> X_TP_rest;   ///< where it lay still when it was last seen well, unless it was seen to move since
+  int ambiguous_with = -1;         ///< equal part it may have been taken for, of two of which one jumped lately
+  double ambiguous_probability = 0;  ///< that the two are exchanged, 0..0.5
+  int exchanged_with = -1;           ///< equal part it exchanged its identity with in this frame
 
   /// Not seen in this frame where it is believed to be.
   bool missing() const { return status != PartStatus::kTracked || bad > 0; }
@@ -60,6 +69,9 @@ struct Track {
 
 /// Where the part is expected after dt.
 Pose PredictPose(const Track& track, double dt);
+
+/// Whether the image agrees with a fit, in the silhouette and along its outline.
+bool Believable(const PoseCandidate& candidate, const TrackOptions& options);
 
 /// Takes a free fit into the track: fuses it with the prediction, updates velocity, covariance and whether it moves.
 void Fuse(const PoseCandidate& candidate, const Pose& X_TC, double dt, const TrackOptions& options, Track& track);

@@ -43,9 +43,10 @@ float ScorePoints(const PointSet& points, const Observation& o, const OwnerMap& 
     if (other > 0 && other < p.z() + 0.006f) continue;
     const float cosine = facing * w;
     const float z = o.Depth(x, y);
-    sum += cosine * JudgePixel(p.z(), z, sigma, o.class_map != nullptr, o.Classes(x, y) & class_bit, [&] {
-                      return o.OnTable(x, y, z);
-                    }).log_likelihood;
+    sum += cosine * JudgePixel(
+                        p.z(), z, sigma, o.class_map != nullptr, o.Classes(x, y) & class_bit,
+                        [&] { return o.OnTable(x, y, z); }, [&] { return o.LikelyDepth(x, y); })
+                        .log_likelihood;
   }
   return sum;
 }
@@ -87,9 +88,10 @@ float ScoreVisible(const VisiblePoints& points, const Observation& o, const Owne
     const float other = owners.OtherDepth(x, y, part);
     if (other > 0 && other < p.z() + 0.006f) continue;
     const float z = o.Depth(x, y);
-    sum += points.weight[i] * JudgePixel(p.z(), z, sigma, has_colour, o.Classes(x, y) & class_bit, [&] {
-                                return o.OnTable(x, y, z);
-                              }).log_likelihood;
+    sum += points.weight[i] * JudgePixel(
+                                  p.z(), z, sigma, has_colour, o.Classes(x, y) & class_bit,
+                                  [&] { return o.OnTable(x, y, z); }, [&] { return o.LikelyDepth(x, y); })
+                                  .log_likelihood;
   }
   return sum;
 }

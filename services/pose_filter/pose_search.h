@@ -2,6 +2,7 @@
 // scored in full.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "services/pose_filter/blobs.h"
@@ -31,6 +32,10 @@ struct PoseCandidate {
   int pixels = 0;           ///< px that agree with the pose
   double full_samples = 0;  ///< samples that the silhouette would have if nothing hid or cut it
 
+  /// Share of the part that is seen, 0..1.
+  double visible_fraction() const {
+    return full_samples > 0 ? std::clamp((score.inlier + score.no_reading) / full_samples, 0.0, 1.0) : 0.0;
+  }
   /// Share of the outline, where it can be judged, at which the image has the step that the pose predicts; 1 without
   /// colour.
   double outline_support() const {

@@ -133,6 +133,10 @@ int Inside(const Observation& observation, const OwnerMap& owners, int part, uin
   if (z > 0 && z < depth - gate) return 0;  // something in front
   const float other = owners.OtherDepth(x, y, part);
   const bool own_class = observation.Classes(x, y) & class_bit;
+  if (!own_class && z == 0) {
+    const float likely = observation.LikelyDepth(x, y);
+    if (likely > 0 && likely < depth - gate) return 0;
+  }
   if (own_class && other > 0) return 0;                // may be the other part's colour
   if (own_class && z > depth + 0.05 + gate) return 0;  // the same colour, far behind
   return own_class ? 1 : -1;
@@ -303,11 +307,14 @@ PoseEquations Linearise(const PartModel& model, const Observation& observation, 
   return out;
 }
 
-Vector6 RefinementStep(const PoseEquations& equations, double reach, const RefinementOptions& options) {
+Vector6 RefinementStep(const PoseEquations& equations, const Vector6& to_start, double reach,
+                       const RefinementOptions& options) {
+  Vector6 prior;
+  prior.head<3>().setConstant(1 / (options.prior_position * options.prior_position));
+  prior.tail<3>().setConstant(1 / (options.prior_rotation * options.prior_rotation));
   Matrix6 H = equations.information;
-  H.diagonal().head<3>().array() += 1 / (options.prior_position * options.prior_position);
-  H.diagonal().tail<3>().array() += 1 / (options.prior_rotation * options.prior_rotation);
-  const Vector6 step = H.ldlt().solve(equations.gradient);
+  H.diagonal() += prior;
+  const Vector6 step = H.ldlt().solve(equations.gradient + prior.cwiseProduct(to_start));
   if (!step.allFinite()) return Vector6::Zero();
   const double length = StepLength(step, reach);
   return length > options.longest_step ? Vector6(step * (options.longest_step / length)) : step;
@@ -329,7 +336,7 @@ RefinementResult Refine(const PartModel& model, const Observation& observation, 
     const double blend = options.iterations > 1 ? static_cast<double>(k) / (options.iterations - 1) : 1;
     result.last = Linearise(model, observation, owners, part, class_bit, result.X_CP, blend, result.last.outline_bias,
                             options, scratch);
-    const Vector6 step = RefinementStep(result.last, reach, options);
+    const Vector6 step = RefinementStep(result.last, Difference(result.X_CP, start), reach, options);
     result.X_CP = Perturb(result.X_CP, step);
     if (StepLength(step, reach) < 2e-4 && k > 0) break;
   }

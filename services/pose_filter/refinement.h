@@ -26,9 +26,9 @@ struct RefinementOptions {
       -0.4;  ///< px, by which the class map's edge is expected outside the true outline: mixed pixels fall out of a
              ///< colour range, so it is negative. Estimated with the pose, as it would else tilt the part
   double outline_bias_sigma = 0.4;  ///< px, of that expectation
-  double prior_position = 0.10;  ///< m, weak prior around the start: keeps the step finite where nothing constrains it
-  double prior_rotation = 0.6;   ///< rad
-  double longest_step = 0.05;    ///< m, of the part's farthest point in one iteration
+  double prior_position = 0.10;     ///< m, prior around the start: keeps the pose finite where nothing constrains it
+  double prior_rotation = 0.6;      ///< rad
+  double longest_step = 0.05;       ///< m, of the part's farthest point in one iteration
 };
 
 /// What the image says about a pose, linearised there. Information and gradient are of Perturb(X_CP, .), camera frame,
@@ -73,9 +73,11 @@ bool FindEvidence(const PartModel& model, const Observation& observation, const 
 PoseEquations Linearise(const PartModel& model, const Observation& observation, const OwnerMap& owners, int part,
                         uint8_t class_bit, const Pose& X_CP, double blend, double outline_bias,
                         const RefinementOptions& options, const RefinementScratch& scratch);
-/// Solution of the equations with the weak prior, no longer than allowed; zero if there is none.
+/// Solution of the equations with the prior, no longer than allowed; zero if there is none.
+/// @param to_start from the pose of the equations to the prior's mean
 /// @param reach m, from the body's origin to its farthest point
-Vector6 RefinementStep(const PoseEquations& equations, double reach, const RefinementOptions& options);
+Vector6 RefinementStep(const PoseEquations& equations, const Vector6& to_start, double reach,
+                       const RefinementOptions& options);
 /// How far a step moves the body's farthest point, m, at most.
 inline double StepLength(const Vector6& step, double reach) {
   return step.head<3>().norm() + reach * step.tail<3>().norm();

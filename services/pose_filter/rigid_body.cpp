@@ -203,7 +203,7 @@ Pose RefineBody(const RigidBody& body, const Observation& observation, const Own
       sum.information.noalias() += A.transpose() * e.information * A;
       sum.gradient.noalias() += A.transpose() * e.gradient;
     }
-    const Vector6 step = RefinementStep(sum, reach, options);
+    const Vector6 step = RefinementStep(sum, Difference(X_CG, start), reach, options);
     X_CG = Perturb(X_CG, step);
     if (StepLength(step, reach) < 5e-4 && k > 0) break;
   }

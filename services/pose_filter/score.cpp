@@ -35,9 +35,9 @@ Score ScoreTile(const DepthTile& tile, const Observation& observation, const Own
         continue;
       }
       const float z = observation.Depth(x, y);
-      const PixelEvidence e =
-          JudgePixel(d, z, static_cast<float>(DepthSigma(d)), has_colour, observation.Classes(x, y) & class_bit,
-                     [&] { return observation.OnTable(x, y, z); });
+      const PixelEvidence e = JudgePixel(
+          d, z, static_cast<float>(DepthSigma(d)), has_colour, observation.Classes(x, y) & class_bit,
+          [&] { return observation.OnTable(x, y, z); }, [&] { return observation.LikelyDepth(x, y); });
       sum += e.log_likelihood;
       switch (e.verdict) {
         case PixelVerdict::kHidden:

@@ -20,15 +20,19 @@ struct PixelEvidence {
 /// part at the part's own depth; if it is a little nearer it is a finger on the part. What hides it can't be the table.
 /// @param z reading, m, 0: none. @param on_table tells (lazily) whether the reading lies on the table. @param
 /// has_colour whether colours are known at all. @param own_colour pixel is in the part's class.
-template <typename OnTable>
+/// @param likely_depth tells (lazily) what depth a pixel without a reading most likely has, m, 0: unknown.
+template <typename OnTable, typename LikelyDepth>
 inline PixelEvidence JudgePixel(float d, float z, float sigma, bool has_colour, bool own_colour,
-                                const OnTable& on_table) {
+                                const OnTable& on_table, const LikelyDepth& likely_depth) {
   constexpr float kDepthGain = 5.5f, kSeeThrough = -5.3f, kColourGain = 2.0f, kColourMiss = -2.0f, kFloor = 0.006f;
   const bool wrong = has_colour && !own_colour;
   if (z <= 0) {
     if (!has_colour) return {PixelVerdict::kNoReading, 0};
-    return wrong ? PixelEvidence{PixelVerdict::kWrongColour, 0.5f * kColourMiss}
-                 : PixelEvidence{PixelVerdict::kNoReading, kColourGain};
+    if (!wrong) return {PixelVerdict::kNoReading, kColourGain};
+    const float likely = likely_depth();
+    return likely > 0 && likely < d - kFloor - 3 * sigma
+               ? PixelEvidence{PixelVerdict::kHidden, 0}
+               : PixelEvidence{PixelVerdict::kWrongColour, 0.5f * kColourMiss};
   }
   const float r = z - d, gate = kFloor + 3 * sigma;
   if (r < -gate)

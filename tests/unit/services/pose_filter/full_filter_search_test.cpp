@@ -98,6 +98,32 @@ TEST(DropEmptyLinks, APartTakenAwayFromItsPartnerIsFollowed) {
   EXPECT_LT(PositionError(InCamera(out, 0), l), 0.003) << "its partner stays";
 }
 
+// A sleeve of the part's colour moves in where the part was taken away. Inside of it colour and depth fit anywhere, but
+// there is no outline.
+TEST(Recover, ALargeThingOfThePartsColourIsNotThePart) {
+  const Task task = OneL();
+  Task drawn = TestTask({task.types[0], TestType("sleeve", BoxMesh({0.30, 0.25, 0.03}), true, 1)});
+  const Pose away = OnTable(0, 9, 0), before = OnTable(0.05, -0.03, 0.7), after = OnTable(-0.2, 0.15, 0.2);
+  const Pose sleeve = OnTable(0.08, -0.03, 0.1);
+  DrawnSession session(task);
+  PartPoses out;
+  uint64_t seed = 0;
+  for (int k = 0; k < 15; ++k) out = session.Step(DrawScene(drawn, {before, away}, seed++));
+  ASSERT_EQ(out.parts[0].status, PartStatus::kTracked);
+  int mistaken = 0;
+  for (int k = 0; k < 30; ++k) {
+    out = session.Step(DrawScene(drawn, {away, sleeve}, seed++));
+    mistaken += out.parts[0].status == PartStatus::kTracked;
+  }
+  EXPECT_LE(mistaken, 3) << "of 30 frames";
+  int right = 0;
+  for (int k = 0; k < 12; ++k) {
+    out = session.Step(DrawScene(drawn, {after, sleeve}, seed++));
+    right += out.parts[0].status == PartStatus::kTracked && PositionError(InCamera(out, 0), after) < 0.005;
+  }
+  EXPECT_GE(right, 6) << "0.2 s are enough";
+}
+
 TEST(ShareOfClass, CountsPixels) {
   std::vector<uint8_t> classes(16, 0);
   classes[0] = 1, classes[1] = 3, classes[2] = 2;

@@ -64,6 +64,19 @@ TEST(PartTrack, AFitThatTheImageContradictsIsNotCalledTracked) {
   }
 }
 
+TEST(PartTrack, APieceOfSomethingLargerIsNotBelieved) {
+  PoseCandidate c = Fit(At(0), 100);
+  EXPECT_TRUE(Believable(c, kOptions)) << "no outline to judge";
+  c.evidence.contour_judged = 50;
+  c.evidence.contour_used = 45;
+  EXPECT_TRUE(Believable(c, kOptions));
+  c.evidence.contour_used = 5;
+  EXPECT_FALSE(Believable(c, kOptions)) << "it goes on beyond the outline";
+  c.evidence.contour_judged = kOptions.least_judged - 1;
+  EXPECT_TRUE(Believable(c, kOptions)) << "too little of the outline to say";
+  EXPECT_FALSE(Believable(Fit(At(0), 30, 70), kOptions)) << "of another colour";
+}
+
 TEST(PartTrack, ASmallPieceIsWorthLess) {
   // A prior so wide that the posterior is the measurement's noise: doubled at `small_piece`, five times at half of it.
   const auto variance = [](double visible) {
@@ -91,6 +104,28 @@ TEST(PartTrack, VelocityNeedsAMovingPart) {
   EXPECT_TRUE(track.moving);
   EXPECT_NEAR(track.velocity.x(), 0.3, 0.03);
   EXPECT_NEAR(PredictPose(track, kFrame).translation().x(), 0.11, 0.002);
+}
+
+TEST(PartTrack, ACoveredPartKeepsThePlaceWhereItLayStill) {
+  Track track = Seen(1);
+  track.X_TP = track.X_TP_free = At(0);
+  track.covariance = track.covariance_free = Matrix6::Identity() * 1e-7;
+  const auto see = [&](double x, double visible, int frames) {
+    for (int k = 0; k < frames; ++k)
+      Fuse(Fit(At(x), static_cast<int>(100 * visible)), Pose::Identity(), kFrame, kOptions, track);
+  };
+  const int still = static_cast<int>(std::ceil(kOptions.rest_time / kFrame)) + 1;
+  see(0, 1, still / 2);
+  EXPECT_FALSE(track.X_TP_rest) << "not for long enough";
+  see(0, 1, still);
+  ASSERT_TRUE(track.X_TP_rest);
+  see(0.012, 0.3, 5);
+  ASSERT_TRUE(track.X_TP_rest);
+  EXPECT_LT(PositionError(*track.X_TP_rest, At(0)), 1e-6) << "what a covered part seems to do is not believed";
+  Coast(PartStatus::kOccluded, kFrame, kOptions, track);
+  EXPECT_TRUE(track.X_TP_rest);
+  see(0.1, 1, 1);
+  EXPECT_FALSE(track.X_TP_rest) << "seen well to move";
 }
 
 TEST(PartTrack, DoubtOfAHiddenPartGrowsTheSameAtAnyFrameRate) {

@@ -48,6 +48,35 @@ TEST(Refinement, ConvergesFromFiveMillimetresAndFourDegrees) {
   }
 }
 
+TEST(Refinement, ThePriorHoldsWhatTheImageDoesNot) {
+  const Task task = OneL();
+  const PartModel model = MakePartModel(task.types[0]);
+  const Pose truth = OnTable(0.03, -0.02, 0.6);
+  // Nothing but table: whatever pulls is noise, and a pose that is believed to a millimetre doesn't move by three.
+  const DrawnObservation empty(task, DrawScene(task, {OnTable(0, 9, 0)}, 1));
+  RefinementOptions sure;
+  sure.prior_position = 0.001;
+  sure.prior_rotation = 0.01;
+  EXPECT_LT(PositionError(RefineDrawn(model, empty, truth, sure).X_CP, truth), 0.003);
+  // Where the image speaks, each prior is one observation beside many: the pose lies between start and truth, the
+  // nearer to the start the surer that is.
+  const DrawnObservation drawn(task, DrawScene(task, {truth}, 1, 0));
+  Vector6 xi = Vector6::Zero();
+  xi[0] = 0.004;
+  const Pose start = Perturb(truth, xi);
+  double nearer = 1;
+  for (const double sigma : {0.1, 0.001, 0.0002, 0.00002}) {
+    RefinementOptions options;
+    options.iterations = 8;
+    options.prior_position = sigma;
+    options.prior_rotation = 6 * sigma;
+    const double away = PositionError(RefineDrawn(model, drawn, start, options).X_CP, start);
+    EXPECT_LT(away, nearer) << sigma;
+    nearer = away;
+  }
+  EXPECT_LT(nearer, 0.0002);
+}
+
 // If one of the six columns of the Jacobian were wrong, one step from a pose moved along that axis would not come back.
 // Errors are measured by the information: where the image hardly holds the part, roll about its length, little matters.
 TEST(Refinement, OneStepTakesBackASmallMotionAlongEveryAxis) {

@@ -65,7 +65,7 @@ TEST_F(RigidBodyTest, AStepIsThatOfItsMembersMovedWithTheBody) {
     sum.gradient += A.transpose() * e.gradient;
     reach = std::max(reach, m.X_GP.translation().norm() + m.model->extent.diameter / 2);
   }
-  const Vector6 expected = RefinementStep(sum, reach, options);
+  const Vector6 expected = RefinementStep(sum, Vector6::Zero(), reach, options);
   EXPECT_GT(StepLength(expected, reach), 0.002);
   const Vector6 step = Difference(start, RefineBody(body, drawn.View(), owners, start, options, scratch_));
   EXPECT_LT((step - expected).norm(), 1e-5 * expected.norm());

@@ -9,9 +9,10 @@
 namespace coach {
 namespace {
 
-PixelEvidence Judge(double d, double z, bool has_colour, bool own, bool on_table = false) {
-  return JudgePixel(static_cast<float>(d), static_cast<float>(z), static_cast<float>(DepthSigma(d)), has_colour, own,
-                    [&] { return on_table; });
+PixelEvidence Judge(double d, double z, bool has_colour, bool own, bool on_table = false, double likely = 0) {
+  return JudgePixel(
+      static_cast<float>(d), static_cast<float>(z), static_cast<float>(DepthSigma(d)), has_colour, own,
+      [&] { return on_table; }, [&] { return static_cast<float>(likely); });
 }
 
 TEST(JudgePixel, SomethingClearlyNearerIsWorthExactlyNothing) {
@@ -41,6 +42,15 @@ TEST(JudgePixel, WrongColourGetsNoGainForItsDepth) {
   EXPECT_LE(Judge(d, 0, true, false).log_likelihood, 0);
   EXPECT_GT(Judge(d, 0, true, true).log_likelihood, 0);
   EXPECT_EQ(Judge(d, 0, false, false).log_likelihood, 0);
+}
+
+TEST(JudgePixel, WithoutAReadingWhatLooksLikeSomethingInFrontHides) {
+  const double d = 0.7;
+  EXPECT_EQ(Judge(d, 0, true, false, false, d - 0.1).verdict, PixelVerdict::kHidden);
+  EXPECT_EQ(Judge(d, 0, true, false, false, d - 0.1).log_likelihood, 0);
+  EXPECT_EQ(Judge(d, 0, true, true, false, d - 0.1).verdict, PixelVerdict::kNoReading) << "its own colour";
+  for (const double likely : {0.0, d, d + 0.1})
+    EXPECT_EQ(Judge(d, 0, true, false, false, likely).verdict, PixelVerdict::kWrongColour) << likely;
 }
 
 TEST(JudgePixel, MatchingDepthFallsWithTheResidual) {
