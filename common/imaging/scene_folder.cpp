@@ -81,7 +81,7 @@ double ParseDepthScale(const fs::path& file, const std::string& place, const jso
 
 fs::path FindImage(const fs::path& folder, int im_id, const std::vector<const char*>& extensions) {
   for (const char* extension : extensions) {
-    const fs::path file = folder / ImageName(im_id, extension);
+    fs::path file = folder / ImageName(im_id, extension);
     if (fs::exists(file)) return file;
   }
   std::string names;
