@@ -141,8 +141,8 @@ PartEstimate Publish(const Track& track, const TrackOptions& options) {
   out.velocity = track.velocity;
   out.covariance = track.covariance + Diagonal(options.floor_position, options.floor_rotation);
   out.visible_fraction = track.visible_fraction;
-  const bool doubtful =
-      track.bad > 0 || (track.calm_for < options.calm_time && track.confidence < options.hasty_confidence);
+  const bool poor = track.confidence < options.hasty_confidence || track.visible_fraction < options.hasty_visible;
+  const bool doubtful = track.bad > 0 || (track.calm_for < options.calm_time && poor);
   out.status = track.status == PartStatus::kTracked && doubtful ? PartStatus::kOccluded : track.status;
   out.confidence = track.confidence;
   out.ambiguous_with = track.ambiguous_with;

@@ -29,7 +29,8 @@ struct TrackOptions {
   int bad_frames = 2;              ///< in a row until the part is lost
   double hasty = 0.02;             ///< m in one frame: farther than a refinement follows surely
   double calm_time = 0.2;          ///< s without that, after which a fit is trusted again
-  double hasty_confidence = 0.75;  ///< of a fit that is trusted all the same
+  double hasty_confidence = 0.75;  ///< of a fit that is trusted all the same,
+  double hasty_visible = 0.3;      ///< if so much of the part is seen
   double rest_visible = 0.6;       ///< visible share of a part that is seen to lie still
   double rest_time = 0.3;          ///< s without a move after which it does
 };

@@ -16,6 +16,7 @@ Track Seen(double confidence) {
   Track track;
   track.status = PartStatus::kTracked;
   track.confidence = confidence;
+  track.visible_fraction = 1;
   return track;
 }
 
@@ -50,6 +51,18 @@ TEST(PartTrack, APoorFitInFastMotionIsNotCalledTracked) {
       calm += kFrame;
     }
     EXPECT_EQ(Status(track), PartStatus::kTracked) << "calm again, " << confidence;
+  }
+}
+
+TEST(PartTrack, ASmallPieceInFastMotionIsNotCalledTracked) {
+  for (const double visible : {kOptions.hasty_visible - 0.05, kOptions.hasty_visible + 0.05}) {
+    Track track = Seen(1);
+    track.visible_fraction = visible;
+    Settle(track.X_TP, kFrame, kOptions, track);
+    EXPECT_EQ(Status(track), PartStatus::kTracked) << "at rest";
+    track.X_TP = At(2 * kOptions.hasty);
+    Settle(At(0), kFrame, kOptions, track);
+    EXPECT_EQ(Status(track), visible < kOptions.hasty_visible ? PartStatus::kOccluded : PartStatus::kTracked);
   }
 }
 
