@@ -130,7 +130,7 @@ class FullFilter final : public PoseFilter {
   /// Over the table or beside it, at a height that a child can reach: what lies still elsewhere is no part of the
   /// lesson.
   bool InReach(const Vector3& p_T) const;
-  bool Plausible(int part, const PoseCandidate& found, bool distractor) const;
+  bool Plausible(int part, const PoseCandidate& found, bool unlikely) const;
   void Recover(const Observation& observation);
   /// Where a part's colour lies unexplained while all are seen, the least visible one of that colour may be there.
   void Relocate(const std::vector<Blob>& blobs, const Observation& observation);

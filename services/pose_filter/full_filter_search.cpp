@@ -82,14 +82,15 @@ void FullFilter::TrySuggestions(const Observation& observation) {
 
 bool FullFilter::InReach(const Vector3& p_T) const { return p_T.z() > -0.10 && p_T.z() < 0.80 && area_.Over(p_T); }
 
-bool FullFilter::Plausible(int part, const PoseCandidate& found, bool distractor) const {
+bool FullFilter::Plausible(int part, const PoseCandidate& found, bool unlikely) const {
   // A part that lay still when something moved in front of it is most likely still there: to be found elsewhere it must
-  // be seen well. So must one in the place of a distractor.
+  // be seen well. So must one that is unlikely there: in the place of a distractor, or away from where a seen part is
+  // believed.
   if (!InReach(camera_.X_TC() * found.X_CP.translation())) return false;
   const Track& track = tracks_[part];
   const bool at_rest =
       (track.status == PartStatus::kOccluded || track.status == PartStatus::kOutOfView) && !track.carried;
-  if (!at_rest && !distractor) return true;
+  if (!at_rest && !unlikely) return true;
   return found.score.agreement() > 0.8 && found.outline_support() > 0.85 &&
          found.score.open() > 0.5 * found.full_samples;
 }
